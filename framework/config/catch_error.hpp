@@ -13,7 +13,7 @@ template <class Work>
 std::optional<Error> catch_error(const Work& work) {
   try {
     work();
-  } catch (const Error& trouble) {  // the caller decides what to do
+  } catch (const Error& trouble) {  // the caller handles the error
     return trouble;
   }
   return std::nullopt;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The composition of a config from groups, its own file and the command line. Each value of the resulting tree has its
-// source location and its layer. Keys and values are checked later (config/resolve.hpp).
+// Composes a config from groups, its own file and the command line. Each value of the resulting tree has its source
+// location and its layer. Keys and values are checked later (config/resolve.hpp).
 #pragma once
 
 #include "config/group_files.hpp"
@@ -21,7 +21,7 @@ namespace palpate {
 /// change the version; a new meaning of an existing one increments it. palpate reads all versions from 1 to this one.
 inline constexpr std::int64_t kRecordVersion = 1;
 
-/// Marks all groups of a config that has the key `complete`: a missing option is then not at its default
+/// Marks all groups of a config that has the key `complete`: a missing option then does not have its default
 /// (Tree::complete). Throws Error for a version above kRecordVersion.
 void mark_complete(Tree& config);
 
@@ -32,13 +32,13 @@ void mark_complete(Tree& config);
 /// then has its default options. A group within another (scene.effects) replaces the content of the outer group at its
 /// path.
 ///
-/// The group `strategy` is not an option. Its file is a config like any other, in strategy/ or in the folder itself, so
-/// that each whole config is also a strategy. It may set all keys of the strategy, which decide the choice of taps and
-/// the models. A strategy in the config ranks below the groups of the config. A strategy as an override replaces each
-/// top-level key that it has.
+/// The group `strategy` is not an option. Its file is a whole config, in strategy/ or in the folder of the config
+/// itself. So each whole config is also a strategy. It may set all keys of the strategy, which decide the choice of
+/// taps and the models. A strategy in the config ranks below the groups of the config. A strategy as an override
+/// replaces each top-level key that it has.
 ///
-/// The file of a strategy may contain keys of the run (Field::of_run()), but they are ignored, with one exception: a
-/// motion given as a map (`motion: {...}`), not as a name. The motion is used only if neither a group nor the config
+/// The file of a strategy may contain keys of the run (Field::of_run()), but they are ignored. The only exception is a
+/// motion given as a map (`motion: {...}`), not as a name. This motion is used only if neither a group nor the config
 /// sets any part of the motion. So a strategy cannot make an arm faster than the config allows.
 class Composer {
  public:
@@ -47,10 +47,10 @@ class Composer {
 
   /// Merges the strategy, then the groups in the order of `defaults`, then the file, then `overrides` in their order.
   ///
-  /// A group in an override replaces the group chosen before at that path. The file's own options there remain if the
-  /// new type has them (see resolve()). A map as an override of a group is merged into the group; any other value
-  /// replaces the old one. Throws Error for missing files, unknown groups, cycles, and chains of more than 16 groups
-  /// that build on each other.
+  /// A group in an override replaces the group chosen before at that path. Options that the config's own file sets in
+  /// this group remain if the new type has them (see resolve()). A map as an override of a group is merged into the
+  /// group; any other value replaces the old one. Throws Error for missing files, unknown groups, cycles, and chains of
+  /// more than 16 groups that build on each other.
   Tree compose(const std::filesystem::path& file, const std::vector<Override>& overrides);
 
   /// See GroupFiles::config().
@@ -70,7 +70,7 @@ class Composer {
   std::vector<std::string> names_of(const std::string& group) const;
 
  private:
-  /// A group's path and the name chosen there. The type of the group gets the layer of the name.
+  /// The path of a group, and the name chosen for this group. The type of the group gets the layer of the name.
   using Choice = Override;
 
   const Tree& load(const std::filesystem::path& file);
@@ -112,7 +112,8 @@ class Composer {
   std::map<std::filesystem::path, Tree> loaded_;  ///< read files, by absolute path
   /// Contents of groups that are bases of others, by group, name and folder.
   std::map<std::array<std::string, 3>, Tree> bases_;
-  std::map<std::string, Tree> brought_;  ///< options of the strategy for configs that do not set them, by key
+  std::map<std::string, Tree>
+      brought_;  ///< options of the strategy that are used if the config does not set them, by key
   std::vector<Group> groups_;
   std::filesystem::path beside_;  ///< folder of the last composed config
 };

@@ -42,7 +42,8 @@ class GroupFiles {
   /// exist. So an installed program provides the configs of a clone in every folder.
   std::filesystem::path config(const std::filesystem::path& file) const;
 
-  /// Returns the folder that has the folder of the group `file`. Groups below this one are searched from there.
+  /// Returns the folder that contains the group folder of `file`. The search for groups on which this group builds
+  /// starts there.
   static std::filesystem::path root_of(const std::filesystem::path& file, const std::string& group);
 
  private:

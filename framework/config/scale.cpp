@@ -88,7 +88,8 @@ Scale usual_scale(Unit unit, LengthKind kind) {
 
 std::string readable(double value, Unit unit, int digits, LengthKind kind) {
   Scale scale = unit_for(unit, std::abs(value), kind);
-  if (scale.unit == "cm" && std::abs(value) >= kReadsAsZero) {  // a single position has the unit that suits it
+  if (scale.unit == "cm" &&
+      std::abs(value) >= kReadsAsZero) {  // a single position has the unit that gives a short number
     if (std::abs(value) < 0.00995) scale = {"mm", 1e-3};
     if (std::abs(value) >= 1.0) scale = {"m", 1.0};
   }

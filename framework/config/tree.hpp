@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A config as a tree of scalars, lists and maps with their places. Configs, records and sweeps are trees in all other
-// code; only yaml*.cpp and json.cpp handle the formats.
+// A config as a tree of scalars, lists and maps with their source locations. Only yaml*.cpp and json.cpp handle YAML
+// and JSON; all other code uses trees for configs, records and sweeps.
 #pragma once
 
 #include <initializer_list>
@@ -40,12 +40,12 @@ struct Tree {
 
   Kind kind = Kind::null;
   std::string text;            ///< text of a scalar, as written
-  bool quoted = false;         ///< the scalar was in quotes, so that it is a text even if it looks like a number
+  bool quoted = false;         ///< whether the scalar was in quotes; it is then a text even if it looks like a number
   std::vector<Tree> items;     ///< items of a list
   std::vector<Entry> entries;  ///< entries of a map, in the written order; keys are unique
   SourceLocation place;
   Layer layer = kFileLayer;
-  bool complete = false;  ///< a map of a record, which has all options of the version that wrote it
+  bool complete = false;  ///< whether this is a map of a record; it then has all options of the version that wrote it
 
   Tree() = default;
   explicit Tree(Kind of) : kind(of) {}
@@ -87,7 +87,7 @@ struct Tree {
   /// not lower. A key has the place of its latest source.
   void merge(const Tree& upper);
 
-  /// Returns one line of text that is the same for equal values, whatever their places.
+  /// Returns one line of text that is the same for equal values, even if their places differ.
   std::string canonical() const;
   /// Appends the text of canonical() to `out`.
   void append_canonical(std::string& out) const;
@@ -123,8 +123,8 @@ inline constexpr const char* kNameHint = "a name has letters, digits, '_' and '-
 /// Returns the known name that is most similar to `name`; "" if none is similar.
 std::string nearest(std::string_view name, const std::vector<std::string>& known);
 
-/// Returns a hint: "did you mean 'x'?" with the most similar name, or else with the shortest name that contains `name`.
-/// Without such a name, the hint is "known: a, b, c", or "" if nothing is known.
+/// Returns the hint "did you mean 'x'?" with the most similar name, or else with the shortest name that contains
+/// `name`. Without such a name, returns "known: a, b, c", or "" if `known` is empty.
 std::string suggestion(std::string_view name, const std::vector<std::string>& known);
 
 }  // namespace palpate
