@@ -42,8 +42,8 @@ namespace {
   throw Error("", fmt::format("{}: {}: {}", file.string(), step, reason), hint);
 }
 
-/// Returns the message of dlerror from the message of Boost, "<function> failed (dlerror system message: <text>):
-/// <unrelated errno text>".
+/// Extracts the text of dlerror from a message of Boost, which has the form "<function> failed (dlerror system message:
+/// <text>): <unrelated errno text>".
 std::string dlerror_part(const std::string& what) {
   const std::string mark = "dlerror system message: ";
   const auto begin = what.find(mark);
@@ -75,8 +75,8 @@ std::string read_library(const fs::path& file) {
   return std::move(reading.text);
 }
 
-/// Throws Error for an incomplete library. dlopen maps the segments that the headers of a file name, and a file that
-/// ends earlier would kill the process (SIGBUS). dlopen itself reports other faults of the headers.
+/// Throws Error for an incomplete library. dlopen maps the segments listed in the headers of a file; if the file ends
+/// earlier, the process is killed (SIGBUS). dlopen itself reports other faults of the headers.
 void check_complete(const fs::path& file, const std::string& bytes) {
   const auto size = std::uint64_t{bytes.size()};
   const auto holds = [size](std::uint64_t offset, std::uint64_t count) {

@@ -73,12 +73,12 @@ class PluginHost final : public PluginSource, public PluginFactory {
   /// Returns the sorted names of a kind, including plugins that are not built yet. Opens no library.
   std::vector<std::string> names(const std::string& kind) const;
 
-  /// Returns file and hash of those of these plugins that are libraries, in their order, and loads them if necessary.
-  /// Throws Error.
+  /// Returns file and hash of all libraries among these plugins, in their order, and loads them if necessary. Throws
+  /// Error.
   std::vector<LoadedPlugin> loaded(const PluginNames& plugins) const;
 
-  /// Returns whether one of these plugins moves something that exists only once, such as an arm. Loads them if
-  /// necessary. Throws Error.
+  /// Returns whether one of these plugins moves a device that only one run can use at a time, such as an arm. Loads the
+  /// plugins if necessary. Throws Error.
   bool one_at_a_time(const PluginNames& plugins) const;
 
   /// Returns whether a folder has a library with this name; the library may be broken.

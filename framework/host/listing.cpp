@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The list of all libraries. Each is loaded in its own child process, because a damaged library may crash or hang it.
+// Lists all libraries. Each library is loaded in its own child process, which a damaged library may crash or hang.
 #include "children/child_process.hpp"
 #include "host/builtin.hpp"
 #include "host/host.hpp"

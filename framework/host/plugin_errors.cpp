@@ -112,7 +112,7 @@ class Wrapper : public Interface {
     return values;
   }
 
-  /// Returns `belief` with the access that the plugin has declared.
+  /// Returns a view of `belief` that allows only the access that the plugin has declared.
   Declared declared(const BeliefView& belief) const { return Declared(belief, call(&Interface::reads), name_); }
 
  private:
