@@ -41,7 +41,7 @@ void complete_contact(const TapLine& line, TapResult& answer);
 /// 86400 s, one day.
 std::optional<AnswerFault> find_fault(const TapResult& answer, const TapLine& line, const HeightBounds& bounds);
 
-/// Returns the outcome with this name. Returns nullopt for other names and for `unknown`, which stands for a missing
+/// Returns the outcome with this name. Returns nullopt for other names, and for `unknown`, which means that there is no
 /// answer.
 std::optional<Outcome> answered_outcome(const std::string& name);
 

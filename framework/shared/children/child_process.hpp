@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Child processes: programs, and forked processes for work that may crash or hang or that cannot use threads.
 //
-// Framework and shipped plugins use these functions, which need only the C library. They throw nothing. If a system
-// call fails, they return an empty result with errno, so that callers can report the failed action. A child gets its
-// input at the start, and writes its output to one pipe, which closes at its end.
+// Framework and shipped plugins use these functions, which need only the C library. They do not throw. If a system call
+// fails, they return an empty result with errno, so that callers can report the failed action. A child gets its input
+// at the start, and writes its output to one pipe, which closes at its end.
 #pragma once
 
 #include <functional>
@@ -34,7 +34,7 @@ class Descriptor {
 
   explicit operator bool() const { return number_ >= 0; }
   int number() const { return number_; }
-  /// Closes the file. Keeps errno.
+  /// Closes the file. Does not change errno.
   void close();
 
  private:
@@ -63,7 +63,7 @@ std::vector<std::string> own_environment();
 struct Program {
   std::vector<std::string> words;                            ///< name and arguments, not interpreted by a shell
   std::string file{};                                        ///< executable; if empty, the name is searched on PATH
-  std::vector<std::string> environment = own_environment();  ///< the first value of a name counts
+  std::vector<std::string> environment = own_environment();  ///< if a name occurs twice, its first value is used
   /// Whether the program has its own process group. Then it gets no signals of the terminal, and has the default signal
   /// handling. Otherwise Ctrl-C ends it, and it ignores the signals that this process ignores, except SIGPIPE and
   /// SIGXFSZ.
@@ -84,15 +84,15 @@ class ChildProcess {
 
   /// Forks a child that runs `work` and ends with its return value as the exit status, without destructors; `work` may
   /// call std::exit(), which runs them. An exception of `work` ends the child by SIGABRT. The child has its own process
-  /// group, because this process handles the signals of the terminal. It is killed when this process or the calling
-  /// thread ends. Returns null, with errno, if no process can be created.
+  /// group, because this process handles the signals of the terminal. The child is killed when this process or the
+  /// calling thread ends. Returns null, with errno, if no process can be created.
   static std::unique_ptr<ChildProcess> fork(const std::function<int(const Say& say)>& work);
 
   /// Starts `program` with `input` as its stdin. Its stdout and stderr are the child's output. The program survives
   /// this process. Returns null, with errno, as spawn() does.
   static std::unique_ptr<ChildProcess> start(const Program& program, std::string_view input = {});
 
-  /// Kills a child that has not ended, and reaps it.
+  /// Kills the child if it has not ended, and reaps it.
   ~ChildProcess();
   ChildProcess(const ChildProcess&) = delete;
   ChildProcess& operator=(const ChildProcess&) = delete;

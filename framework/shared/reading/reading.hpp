@@ -16,7 +16,7 @@
 
 namespace palpate {
 
-/// Largest sizes in bytes: for each kind of content, a multiple of the largest size that palpate writes or documents.
+/// Limits of file sizes in bytes. Each limit is a multiple of the largest size that palpate writes or documents.
 constexpr std::uintmax_t kMostConfigBytes = std::uintmax_t{1} << 20;     ///< a config or a file of a group
 constexpr std::uintmax_t kMostManifestBytes = std::uintmax_t{64} << 20;  ///< a line of a record that contains lists
 constexpr std::uintmax_t kMostLogBytes = std::uintmax_t{512} << 20;      ///< all lines of a record or of a sweep
@@ -54,8 +54,8 @@ struct Reading {
 /// Reads a file of at most `most_bytes`. Never blocks on a pipe and opens no device. Throws only std::bad_alloc.
 Reading read_bounded(const std::filesystem::path& file, std::uintmax_t most_bytes, Origin origin);
 
-/// Read the first, or the last, `bytes` of a file of at most kMostLogBytes, or all of a shorter file. Otherwise like
-/// read_bounded().
+/// Read the first, or the last, `bytes` of a file of at most kMostLogBytes; a shorter file is read as a whole.
+/// Otherwise they behave like read_bounded().
 Reading read_begin_bounded(const std::filesystem::path& file, std::uintmax_t bytes, Origin origin);
 Reading read_end_bounded(const std::filesystem::path& file, std::uintmax_t bytes, Origin origin);
 
