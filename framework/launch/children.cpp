@@ -36,7 +36,7 @@ bool in_children(std::size_t count, int workers, const std::function<void(std::s
   for (std::size_t first = 0; first < step; ++first) {
     owned.push_back(ChildProcess::fork([&](const ChildProcess::Say& say) {
       try {
-        // Neighbouring items take similar times, so that a stride of `step` lets all children end together.
+        // Neighbouring items take similar times, so with a stride of `step` all children end at about the same time.
         for (std::size_t i = first; i < count; i += step) {
           work(i);
           say(kDone);

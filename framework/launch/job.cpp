@@ -48,7 +48,7 @@ JobEnd attempt_job(const RunEnvironment& environment, const std::shared_ptr<RunD
     if (!is_there(directory / "config.yaml")) throw *trouble;
     // The job is done, and only files made from its record are missing, which is not a failure.
     if (read_ending(directory).state == RunStatus::State::done) throw *trouble;
-    // An error before the start of the run has left no end in the record.
+    // An error before the start of the run leaves no line `end` in the record, so the failure is recorded here.
     write_failure(*held, trouble->what());
   }
   return end;

@@ -26,9 +26,10 @@ class Launcher {
   struct State {
     std::vector<std::size_t> returned;  ///< jobs that ended or were abandoned since the last call
     bool all_recorded = true;           ///< false: a returned job could not record its end or write its files
-    bool blocked = false;               ///< a job could not begin, for a reason that holds for all; no job is waiting
-    int running = 0;                    ///< number of running jobs, as far as the launcher can see
-    int waiting = 0;                    ///< number of jobs
+    bool blocked =
+        false;        ///< a job could not start, for a reason that also applies to all other jobs; no job is waiting
+    int running = 0;  ///< number of running jobs, as far as the launcher can see
+    int waiting = 0;  ///< number of jobs
     bool empty_handed() const { return running == 0 && waiting == 0; }
   };
 
@@ -86,9 +87,9 @@ struct LaunchOrder {
 /// An entry of the table of launchers.
 struct LauncherType {
   std::unique_ptr<Launcher> (*make)(const LaunchOrder& order);
-  /// Throws Error for options that this launcher rejects; null: it accepts all.
+  /// Throws Error for options that this launcher rejects. Null if the launcher accepts all options.
   void (*check_options)(const ClusterOptions& options) = nullptr;
-  /// Throws Error if this machine lacks the programs of the scheduler; null: none is needed.
+  /// Throws Error if this machine lacks the programs of the scheduler. Null if the launcher needs no programs.
   void (*check_installed)() = nullptr;
 };
 

@@ -40,11 +40,11 @@ void LocalLauncher::submit(const std::vector<std::size_t>& jobs) {
 
 bool LocalLauncher::start(std::size_t job) {
   std::unique_ptr<ChildProcess> process = ChildProcess::fork([&](const ChildProcess::Say& say) -> int {
-    // The child needs its file descriptors for its own files.
+    // Close the pipes of other children, because this child needs the file descriptors for its own files.
     for (const Running& other : running_) other.process->forget();
     const JobEnd end = run(job);
     if (end == JobEnd::blocked) say(kBlocked);
-    // A full exit, unlike that of other children, because plugins must release things such as a robot's node.
+    // Use exit() and not _exit(), because plugins must release resources such as a ROS node.
     std::exit(static_cast<int>(end));
   });
   if (!process && !running_.empty()) return false;

@@ -67,8 +67,8 @@ class SlurmLauncher final : public Launcher {
     const auto each = static_cast<std::size_t>(order_.options.jobs_per_task);
     const std::size_t tasks = (jobs.size() + each - 1) / each;
     const auto begin_of = [&](std::size_t task) { return std::min(task * each, jobs.size()); };
-    // A line names the range from the first to the last job of a task. Jobs in between that the task must not run are
-    // done.
+    // A line names the range from the first to the last job of a task. Other jobs within this range are done, so the
+    // task skips them.
     std::string list;
     for (std::size_t task = 0; task < tasks; ++task)
       list += fmt::format("{}-{}\n", jobs[begin_of(task)], jobs[begin_of(task + 1) - 1]);
