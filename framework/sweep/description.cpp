@@ -87,7 +87,7 @@ void take_out(Tree& blocks, const std::string& key) {
   std::vector<Tree>& items = list->items;
   if (std::none_of(items.begin(), items.end(), [&](const Tree& item) { return item.find(key) != nullptr; })) return;
   for (Tree& item : items) item.erase(key);
-  // Items that differed only in this key are now equal.
+  // Remove items that differed only in this key and are now equal.
   std::set<std::string> kept;
   const auto is_twin = [&](const Tree& item) { return !kept.insert(item.canonical()).second; };
   items.erase(std::remove_if(items.begin(), items.end(), is_twin), items.end());

@@ -22,9 +22,9 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// The use of a swept key in the jobs so far.
+/// How the jobs planned so far use a swept key.
 struct KeyUse {
-  const Axis* asker = nullptr;  ///< axis that sets the key; null: none yet
+  const Axis* asker = nullptr;  ///< axis that sets the key; null if no combination has set it yet
   bool takes_part = false;
   std::set<std::string> siblings;  ///< other options next to the key
 };

@@ -29,8 +29,8 @@ bool decides_run(const std::string& path);
 std::vector<std::string> further_differences(const std::vector<PooledSetting>& settings,
                                              const std::vector<std::string>& keys);
 
-/// Returns the value of each setting at `key`, one of `keys`, as text. Settings have the same text exactly if their
-/// configs have equal values there.
+/// Returns the value of each setting at `key`, one of `keys`, as text. Two settings have the same text if and only if
+/// their configs have equal values at `key`.
 std::vector<std::string> pooled_values(const std::vector<PooledSetting>& settings, const std::string& key,
                                        const std::vector<std::string>& keys);
 

@@ -38,7 +38,7 @@ bool is_one_of(const PoolTexts& names, const std::string& name) {
 
 bool is_scene(const std::string& key) { return is_at_or_below(key, kScene); }
 
-/// A sweep, or a run as a sweep of one job without keys.
+/// A record to combine: a sweep, or a run as a sweep of one job without keys.
 struct PoolRecord {
   Sweep sweep;
   std::string name;
@@ -156,7 +156,7 @@ class Pool {
     keys_.emplace_back(kSeed);
   }
 
-  /// Sets the values of all settings at all keys.
+  /// Computes the value of each setting at each key.
   void make_values() {
     values_.assign(settings_.size(), {});
     for (const std::string& key : keys_) {

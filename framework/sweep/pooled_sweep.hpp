@@ -20,9 +20,9 @@ struct PooledSweep {
 ///
 /// The keys are all swept keys, `by`, the seed, and each further option in which the recorded configs differ. If the
 /// types of a plugin differ, the key is the plugin's block (`acquisition`), else the option (`kernel.length_scale`).
-/// Some options are keys only if `by` has them: options with one value per strategy, if the strategy is swept; and
-/// options with one value per name, except for scenes, if `by` has `name`. Options that do not affect results, such as
-/// `log`, are not keys.
+/// Some options are keys only if `by` contains them. If the strategy is swept, these are the options with one value per
+/// strategy. If `by` contains `name`, these are the options with one value per name, except for scenes. Options that do
+/// not affect results, such as `log`, are not keys.
 ///
 /// The value of a key that a record does not sweep comes from the configs of its jobs. Values are equal if the configs
 /// are equal: `2 cm` and `0.02 m`, or `scene=ring` and a config with the same objects. The text of a value is that of

@@ -16,7 +16,7 @@
 namespace palpate {
 
 /// Calls `use(job, read(directory))` for each of `jobs` (indices into Sweep::jobs), in their order and in the calling
-/// thread. `read` runs in several threads. Rethrows the first exception of either, in the order of the jobs.
+/// thread. `read` runs in several threads. Rethrows the first exception of `read` or `use`, in the order of the jobs.
 template <class Read, class Use>
 void read_jobs(const Sweep& sweep, const std::vector<std::size_t>& jobs, const Read& read, const Use& use) {
   constexpr std::size_t kMostThreads = 8;
