@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Errors as values, for callers that go on after an error or add information to it.
+// Returns errors as values, for callers that continue after an error or add information to it.
 #pragma once
 
 #include <palpate/error.hpp>
@@ -13,7 +13,7 @@ template <class Work>
 std::optional<Error> catch_error(const Work& work) {
   try {
     work();
-  } catch (const Error& trouble) {  // the caller decides what to do
+  } catch (const Error& trouble) {  // the caller handles the error
     return trouble;
   }
   return std::nullopt;

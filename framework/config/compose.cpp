@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Number of layers of a group: its own content is on the highest, the groups that it builds on are below.
+/// Number of layers of a group. Its own content is on the highest layer, and the groups that it builds on are below.
 constexpr Layer kLayersOfGroup = 16;
 
 [[noreturn]] void refuse_depth(const SourceLocation& place) {
@@ -27,8 +27,8 @@ constexpr Layer kLayersOfGroup = 16;
               "merge them into fewer files");
 }
 
-/// Appends a group to `chain`, the files under way from the config to this one. Throws Error for an invalid name and
-/// for a file that is already in the chain.
+/// Appends a group to `chain`, the groups that led from the config to this one. Throws Error for an invalid name, and
+/// for a group that is already in the chain.
 void add_link(const std::string& group, const std::string& name, const SourceLocation& place,
               std::vector<std::string>& chain) {
   if (!is_name(name))
@@ -71,14 +71,14 @@ void set_layer_of_type(Tree& content, Layer layer, const SourceLocation& place) 
   }
 }
 
-/// Completes groups that inherit from another key (Field::inherits()): a config may set only their differences.
+/// Completes groups that inherit from another key (Field::inherits()): a config then needs to set only the differences.
 void inherit_shared(Tree& tree, const ConfigKeys& keys) {
   for (const auto& [heir, from] : keys.heirs()) {
     const Tree* own = tree.find_path(heir);
     const Tree* base = tree.find_path(from);
     if (own == nullptr || base == nullptr || !own->is_map() || !base->is_map()) continue;
     Tree merged = *base;
-    // The inherited values rank below all values of the heir.
+    // Inherited values get lower layers than all own values.
     merged.shift_layer(-2 * kCommandLineLayer);
     merged.merge(*own);
     merged.place = own->place;
@@ -92,7 +92,8 @@ void mark_complete(Tree& config) {
   const Tree* complete = config.find("complete");
   if (complete == nullptr) return;
   std::int64_t number = 0;
-  catch_error([&] { number = read_integer(*complete, "complete"); });  // resolving reports other errors
+  catch_error(
+      [&] { number = read_integer(*complete, "complete"); });  // an invalid value is reported later, by resolve()
   if (number > kRecordVersion) {
     throw Error(
         complete->place.text(),
@@ -192,7 +193,7 @@ Tree Composer::base_content(const std::string& group, const Tree& name, const fs
   const std::array<std::string, 3> key{group, name.text, beside.string()};
   if (const auto known = bases_.find(key); known != bases_.end()) return known->second;
   Tree content = group_content(group, name.text, name.place, beside, chain);
-  // A plugin without a file has the place of its name, which differs from use to use.
+  // A plugin without a file is not cached, because its place is that of its name, which differs between uses.
   if (!group_files_.find(group, name.text, name.place, beside).empty()) bases_.emplace(key, content);
   return content;
 }
@@ -201,7 +202,7 @@ std::vector<Composer::Choice> Composer::take_defaults(Tree& own) const {
   std::vector<Choice> choices;
   const Tree* defaults = own.find("defaults");
   if (defaults == nullptr) {
-    // Otherwise the first error would be about a group that the misspelt list chooses.
+    // Report a misspelt `defaults` first; otherwise the first error would be about a group that the list chooses.
     for (const Tree::Entry& entry : own.entries) {
       if (nearest(entry.key, {"defaults"}).empty()) continue;
       throw Error(entry.place.text(), fmt::format("unknown option '{}'", entry.key), "did you mean 'defaults'?");
@@ -253,8 +254,8 @@ Tree Composer::take_group(const Choice& choice, const fs::path& beside, Layer la
 }
 
 void Composer::lay_groups(Tree& tree, const std::vector<Choice>& choices, const fs::path& beside, Layer& layer) {
-  // A group may bring options for the key next to it, as a backend brings its motion. These options count unless that
-  // key is chosen by an override, or anywhere in the config that chooses the group.
+  // A group may contain options for the key next to it: a backend may contain a motion. These options are ignored if an
+  // override chooses that key, or if the config that chooses the group also chooses that key.
   const auto is_chosen = [&](const std::string& key, Layer since) {
     return std::any_of(choices.begin(), choices.end(), [&](const Choice& one) {
       return one.path == key && (one.value.layer >= kSweepLayer || since < kSweepLayer);

@@ -30,7 +30,7 @@ class Describer final : public Fields {
  public:
   explicit Describer(const PluginCases& plugins) : plugins_(plugins) {
     constexpr std::size_t kUsual =
-        16;  // a usual number of fields, reserved because a first run describes hundreds of options
+        16;  // usual number of fields, reserved to save time, because a first run describes hundreds of options
     rows.reserve(kUsual);
   }
 
@@ -149,7 +149,7 @@ Tree plugin_schema(const std::string& kind) { return Tree::map({{"$ref", Tree::q
 
 Tree array_schema(Tree items) { return Tree::map({{"type", Tree::quote("array")}, {"items", std::move(items)}}); }
 
-/// Returns the schema of a row of `field`, with its number of values.
+/// Returns the schema of a row of `field`, including the number of values per row.
 Tree row_schema(const FieldDescription& field) {
   Tree out = array_schema(number_schema(field.unit));
   for (const char* bound : {"minItems", "maxItems"}) out.at(bound) = Tree::scalar(std::to_string(field.count));
@@ -172,7 +172,7 @@ Tree group_schema(const std::vector<FieldDescription>& fields) {
   return Tree::map({{"anyOf", any}});
 }
 
-/// Returns the schema of a group, or of a word in its place.
+/// Returns the schema of a group. A group with files may be replaced by a file's name, and an optional group by `none`.
 Tree section_schema(const FieldDescription& field) {
   Tree group = group_schema(field.fields);
   if (!field.optional && !field.group) return group;
@@ -243,7 +243,7 @@ Tree value_schema(const FieldDescription& field) {
       if (field.adopted) return Tree::map({{"type", Tree::quote("string")}});
       break;
     case Type::plugins: {
-      // An item of a list cannot be chosen by a group's name, so that it must be a map with a type.
+      // An item of a list cannot be chosen by a group's name, so it must be a map with a type.
       const Tree typed = Tree::map({{"type", Tree::quote("object")}, {"required", Tree::list({Tree::quote("type")})}});
       return array_schema(Tree::map({{"allOf", Tree::list({plugin_schema(field.kind), typed})}}));
     }
@@ -270,7 +270,7 @@ void add_properties(Tree& properties, const std::vector<FieldDescription>& field
 }  // namespace
 
 std::string FieldDescription::type_name() const {
-  // In the order of FieldDescription::Type.
+  // Names in the order of FieldDescription::Type.
   constexpr std::array kNames{"{dimension}",
                               "{count} {dimension}s",
                               "rows of {count} {dimension}s",

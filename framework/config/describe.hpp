@@ -21,7 +21,7 @@ struct FieldDescription {
   Type type = Type::real;
   Unit unit = Unit::none;
   std::string range;          ///< for example "> 0 m" or "0 .. 1"; "": no limits
-  std::string default_value;  ///< as in a config; "": none
+  std::string default_value;  ///< text as in a config; "": no default
   std::string meaning;
   std::string source;
   bool required = false;
@@ -34,9 +34,9 @@ struct FieldDescription {
   std::string beside;                    ///< see Field::with_beside(); "": none
   std::string neutral;                   ///< see Field::neutral(); as in a config, "none": absent, "": no neutral value
   std::size_t count = 0;                 ///< number of values of `reals`, or of a row of `table`
-  std::string kind;                      ///< of a `plugin`
-  std::vector<CaseDescription> cases;    ///< of a `choice`
-  std::vector<FieldDescription> fields;  ///< of `section` and `sections`
+  std::string kind;                      ///< kind of a `plugin`
+  std::vector<CaseDescription> cases;    ///< cases of a `choice`
+  std::vector<FieldDescription> fields;  ///< fields of a `section` or of `sections`
 
   /// Returns for example "length", "whole number" or "one of a, b".
   std::string type_name() const;

@@ -21,7 +21,7 @@ int decimals_for(double value, int digits) {
   return digits - 1 - static_cast<int>(std::floor(std::log10(std::abs(value))));
 }
 
-/// Returns the unit for numbers of which `largest` (in SI) is the largest.
+/// Returns the unit for numbers up to `largest` (in SI).
 Scale unit_for(Unit unit, double largest, LengthKind kind) {
   if (unit == Unit::metre) {
     const bool nothing = largest < kReadsAsZero;
@@ -88,7 +88,8 @@ Scale usual_scale(Unit unit, LengthKind kind) {
 
 std::string readable(double value, Unit unit, int digits, LengthKind kind) {
   Scale scale = unit_for(unit, std::abs(value), kind);
-  if (scale.unit == "cm" && std::abs(value) >= kReadsAsZero) {  // a single position has the unit that suits it
+  if (scale.unit == "cm" &&
+      std::abs(value) >= kReadsAsZero) {  // a single position has the unit that gives a short number
     if (std::abs(value) < 0.00995) scale = {"mm", 1e-3};
     if (std::abs(value) >= 1.0) scale = {"m", 1.0};
   }
@@ -99,7 +100,8 @@ std::string readable(double value, Unit unit, int digits, LengthKind kind) {
 std::string significant(double value, int digits) {
   if (value == 0.0) return "0";
   if (!std::isfinite(value)) return fmt::format("{}", value);
-  // %g switches to an exponent if there are more whole digits than significant ones. People prefer 1234 to 1.23e+03.
+  // %g uses an exponent for numbers with more whole digits than significant digits. 1234 is easier to read than
+  // 1.23e+03.
   const int decimals = decimals_for(value, digits);
   if (decimals < 0 && std::abs(value) < 1e6) return fmt::format("{:.0f}", value);
   return fmt::format("{:.{}g}", value, digits);

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Units and digits of quantities for people. Tables, summaries, status lines and reports format numbers only by this
-// file; common.js of the pages follows the same rule. Machine formats (CSV, JSON, records) have all digits in SI.
+// Units and digits of quantities in output for users. Tables, summaries, status lines and reports format all numbers
+// with this file; common.js of the pages follows the same rules. Machine formats (CSV, JSON, records) have all digits
+// in SI.
 //
 // Units: positions, heights and their standard deviations are in centimetres, errors in millimetres, times in seconds,
 // all else in SI. A column or axis has one unit. The unit changes only if the largest number would have too many digits
-// before the point or too many zeros after it. A single length in a sentence has the unit that suits it.
+// before the point or too many zeros after it. A single length in a sentence has the unit that gives a short number.
 //
 // Digits: a column has as many decimals as its smallest number needs for three significant digits, at most four. A
 // number that would be shown as 0 gets two significant digits. Numbers below a nanometre or a nanosecond are 0.
@@ -26,12 +27,12 @@ struct Scale {
   std::string unit;     ///< "": none
   double factor = 1.0;  ///< SI units per `unit`
   int decimals = 0;
-  bool scientific = false;  ///< for numbers without a unit that are too small or too large for decimals
-  bool open = false;        ///< the values are not known yet; each gets at least two significant digits
+  bool scientific = false;  ///< true for numbers without a unit that are too small or too large for decimals
+  bool open = false;        ///< whether the values are not known yet; each then gets at least two significant digits
 
   /// Returns for example "3.21" for `value` in SI, without its unit; "nan" or "inf" for values that are not finite.
   std::string number(double value) const;
-  /// Returns "-" for nullopt.
+  /// Returns the number; "-" for nullopt.
   std::string number(const std::optional<double>& value) const { return value ? number(*value) : "-"; }
   /// Returns the number with its sign, for example "+0.3". A number that is rounded to 0 has no sign.
   std::string difference(double value) const;
@@ -39,11 +40,11 @@ struct Scale {
   /// analysis/mean_output.hpp.
   template <class Mean>
   std::string estimate(const Mean& mean) const;
-  /// Returns for example "5 mm".
+  /// Returns a number with its unit, for example "5 mm".
   std::string with_unit(const std::string& number) const { return number + (unit.empty() ? "" : " " + unit); }
-  /// Returns for example "3.2 mm" for a value in SI.
+  /// Returns a value in SI with its unit, for example "3.2 mm".
   std::string quantity(double value) const { return with_unit(number(value)); }
-  /// Returns for example "robot_seconds [s]".
+  /// Returns the title of a column with its unit, for example "robot_seconds [s]".
   std::string title(const std::string& name) const { return name + (unit.empty() ? "" : " [" + unit + "]"); }
 };
 

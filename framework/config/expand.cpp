@@ -14,8 +14,8 @@
 namespace palpate {
 namespace {
 
-constexpr std::size_t kMaxValues = 1'000'000;        ///< per axis
-constexpr std::size_t kMostValues = 2 * kMaxValues;  ///< for all axes together
+constexpr std::size_t kMaxValues = 1'000'000;        ///< limit per axis
+constexpr std::size_t kMostValues = 2 * kMaxValues;  ///< limit for all axes together
 constexpr const char* kHowTo = "write range(0,10), range(0,10,2) or logspace(1cm,5cm,8), both ends with the same unit";
 
 [[noreturn]] void refuse(const Tree& tree, const std::string& key, const std::string& reason, const std::string& hint) {
@@ -57,7 +57,7 @@ Bound parse_bound(const std::string& text, const Tree& tree, const std::string& 
 
 constexpr double kRounding = 1e-9;
 
-/// Rounds to 15 digits, which each decimal keeps: 3 * 0.1 is 0.30000000000000004, but a step of 0.1 means 0.3.
+/// Rounds to 15 digits, which removes rounding errors of steps: 3 * 0.1 is 0.30000000000000004 and becomes 0.3.
 double as_decimal(double value) {
   const std::string text = fmt::format("{:.15g}", value);
   double out = value;
@@ -68,7 +68,7 @@ double as_decimal(double value) {
 std::vector<Tree> expand_range(const std::vector<Bound>& from, const Tree& tree, const std::string& key,
                                ValueCount& counted) {
   const double step = from.size() == 3 ? from[2].value : 1.0;
-  // (1.3 - 1) / 0.1 is 3.0000000000000004, but the end must not be included by rounding.
+  // Rounding errors must not include the end of a range: (1.3 - 1) / 0.1 is 3.0000000000000004.
   const double count = std::ceil((from[1].value - from[0].value) / step - kRounding);
   if (!(count >= 1.0)) refuse(tree, key, "has no value", "the end must lie beyond the start");
   if (count > static_cast<double>(kMaxValues)) refuse(tree, key, "has more than a million values", "use a wider step");

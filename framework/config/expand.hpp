@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The values of swept keys, parsed from lists, `range` and `logspace`; and continuous ranges.
+// Parses the values of swept keys (lists, `range` and `logspace`) and continuous ranges.
 #pragma once
 
 #include "config/compose.hpp"
@@ -47,8 +47,8 @@ struct ContinuousRange {
   double at(double share) const;
 };
 
-/// Returns nullopt for a value that is not a continuous range. Throws Error, with `key`, for ends with different units
-/// or in the wrong order.
+/// Parses a continuous range. Returns nullopt for any other value. Throws Error, with `key`, for ends with different
+/// units or in the wrong order.
 std::optional<ContinuousRange> parse_continuous(const Tree& value, const std::string& key);
 
 /// The hint of errors about continuous ranges.

@@ -48,9 +48,8 @@ bool gives(const fs::path& folder, fs::perms rights) {
 
 bool others_may_write(const fs::path& folder) { return gives(folder, fs::perms::others_write); }
 
-/// Returns whether all users keep files of their own in a folder, such as /tmp. If others may also remove files, they
-/// may have replaced the config itself, so that groups add no danger. All folders of some mounted disks are of that
-/// kind.
+/// Returns whether a folder, such as /tmp, lets all users keep their own files (sticky bit). Without the sticky bit,
+/// others could replace the config itself, so groups add no danger; some mounted disks have only such folders.
 bool is_common(const fs::path& folder) { return gives(folder, fs::perms::others_write | fs::perms::sticky_bit); }
 
 }  // namespace
@@ -70,7 +69,7 @@ GroupFiles::Roots GroupFiles::roots(const fs::path& beside) const {
     add(folder, is_common(folder));
     break;
   }
-  // The user did not choose this folder, so that the right of others to write is enough to reject it.
+  // The user did not choose this folder, so it is rejected if others may write there.
   const fs::path working = fs::current_path();
   add(working / "configs", others_may_write(working) || others_may_write(working / "configs"));
   add(shipped_, false);

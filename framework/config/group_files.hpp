@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The search for the files of config groups.
+// Searches for the files of config groups.
 #pragma once
 
 #include "config/tree.hpp"
@@ -15,7 +15,7 @@
 namespace palpate {
 
 /// Finds the file <folder>/<group>/<name>.yaml of a group. It searches the folder of the config, the nearest folder
-/// named `configs` above it, ./configs, and the configs of the program. The first file counts.
+/// named `configs` above it, ./configs, and the configs of the program. The first file found is used.
 ///
 /// A group may name a program that a run starts, so the file must be the user's own. A file is rejected if all users
 /// may put files into its folder, as into /tmp (sticky bit). In ./configs, a file is also rejected if others may write
@@ -39,22 +39,23 @@ class GroupFiles {
                 const std::filesystem::path& beside) const;
 
   /// Returns `file`, or the program's own config of that name if `file` is a relative name configs/... that does not
-  /// exist. An installed program so has the configs of a clone in every folder.
+  /// exist. So an installed program provides the configs of a clone in every folder.
   std::filesystem::path config(const std::filesystem::path& file) const;
 
-  /// Returns the folder that has the folder of the group `file`. Groups below this one are searched from there.
+  /// Returns the folder that contains the group folder of `file`. The search for groups on which this group builds
+  /// starts there.
   static std::filesystem::path root_of(const std::filesystem::path& file, const std::string& group);
 
  private:
-  /// Folders to search, in order.
+  /// Folders to search, in this order.
   struct Roots {
     std::vector<std::filesystem::path> safe;
-    std::vector<std::filesystem::path> open;  ///< where others may have put a file
+    std::vector<std::filesystem::path> open;  ///< folders in which other users may have put a file
   };
   Roots roots(const std::filesystem::path& beside) const;
 
   std::filesystem::path shipped_;
-  /// Results of find() by group, name and folder: a sweep asks for the same groups once per job.
+  /// Cached results of find() by group, name and folder, because a sweep needs the same groups for each job.
   mutable std::map<std::array<std::string, 3>, std::filesystem::path> found_;
 };
 

@@ -13,8 +13,8 @@ bool is_at_or_below(const std::string& path, const std::string& top) {
   return path.compare(0, top.size(), top) == 0 && (path.size() == top.size() || path[top.size()] == '.');
 }
 
-/// Reads the properties of keys but not their descriptions, because each command starts with this and descriptions take
-/// time.
+/// Reads the properties of keys. It skips their descriptions to save time, because every command reads the properties
+/// first.
 class ConfigKeys::Reader final : public Fields {
  public:
   explicit Reader(ConfigKeys& keys) : keys_(keys) {}
@@ -45,7 +45,7 @@ class ConfigKeys::Reader final : public Fields {
 
  private:
   ConfigKeys& keys_;
-  std::string path_;  ///< of the present section: "" at the top, otherwise it ends with a dot
+  std::string path_;  ///< path of the current section: "" at the top, otherwise it ends with a dot
 
   void note(const Field& field) {
     if (field.is_group) keys_.groups_.push_back(path_ + field.name);

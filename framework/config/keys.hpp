@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The properties of config keys for the composition of configs: groups, inheritance between keys, and keys of a
-// strategy. All come from the field list of the config.
+// Properties of config keys that the composition of configs needs: groups, inheritance between keys, and keys of a
+// strategy. All properties come from the field list of the config.
 #pragma once
 
 #include <palpate/options.hpp>
@@ -14,7 +14,7 @@
 
 namespace palpate {
 
-/// The group that is not an option. Its file is a config like any other: see Composer.
+/// The group `strategy`, which is not an option. Its file is a whole config: see Composer.
 constexpr const char* kStrategy = "strategy";
 
 class ConfigKeys {
@@ -37,10 +37,11 @@ class ConfigKeys {
 
   /// Returns whether a strategy may set the value at a dotted path. Unknown paths are accepted here and rejected later.
   bool is_of_strategy(const std::string& path) const;
-  /// Returns whether a strategy sets a top-level key only for configs that do not set it: Field::with_beside().
+  /// Returns whether a strategy's value of a top-level key is used only if the config does not set the key. This holds
+  /// for keys next to a plugin (Field::with_beside()).
   bool is_brought(const std::string& key) const;
-  /// Returns the key that stands next to a plugin and has its options, for example `motion` for `backend`; "" if there
-  /// is none.
+  /// Returns the key next to a plugin that contains further options of this plugin, for example `motion` for `backend`;
+  /// "" if there is none.
   std::string beside(const std::string& path) const;
   /// Returns whether the group at `choice` decides the value at a dotted path, which lies within the group or within
   /// the key next to it.
@@ -59,7 +60,7 @@ class ConfigKeys {
   std::set<std::string> plugins_;  ///< names of plugin kinds that are groups
   std::set<std::string> typed_;
   std::set<std::string> of_run_;
-  std::map<std::string, std::string> beside_;  ///< by the key of the plugin
+  std::map<std::string, std::string> beside_;  ///< key next to a plugin, by the key of the plugin
   std::vector<std::pair<std::string, std::string>> heirs_;
 };
 

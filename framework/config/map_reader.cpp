@@ -90,7 +90,7 @@ void MapReader::retired(const Field& field, const FixedValue& last) {
 
 void MapReader::require(bool holds, const char* field, const std::string& reason) {
   if (holds) return;
-  if (notes_.missing) throw Error(*notes_.missing);  // probably the cause
+  if (notes_.missing) throw Error(*notes_.missing);  // the missing option is probably the cause
   const SourceLocation place = input_.place_of(field);
   const std::string_view path = field;
   const std::string key(path.substr(0, path.find('.')));
@@ -237,7 +237,7 @@ void MapReader::refuse_unknown(const Tree::Entry& entry, const std::vector<std::
   const std::string reason = fmt::format("unknown option '{}'", entry.key);
   if (is_below_one_of(entry.key, known)) throw Error(entry.place.text(), reason, "write " + nested(entry));
   const std::string hint = suggestion(entry.key, known);
-  // The hint lists all known keys, so that the message must name their owner.
+  // If the hint lists all known keys, the message must name the map that has them.
   const bool listed = hint.rfind("known: ", 0) == 0;
   if (const std::string deeper = listed && path_.empty() ? path_to(entry.key) : ""; !deeper.empty())
     throw Error(entry.place.text(), reason, "write " + deeper);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The reading of one map of a config: known keys, values of fields, and the text for the id of the run. See resolve.cpp
-// for the kinds of fields.
+// Reads one map of a config: known keys, values of fields, and the text for the id of the run. See resolve.cpp for the
+// kinds of fields.
 #pragma once
 
 #include "config/resolve.hpp"
@@ -55,16 +55,16 @@ class MapReader : public Fields {
   /// Returns the value of a field, in a record also under its former name; null if there is none.
   const Tree* find(const Field& field);
 
-  /// The meaning of a missing field in a record.
+  /// The meaning of a field that a record lacks.
   enum class Missing { refused, absent, of_its_parts };
   /// Marks a field as known and returns its value. Returns null if a config does not set it. In a record, a missing
   /// field has its neutral value: see resolve().
   const Tree* claim(const Field& field, Missing missing = Missing::refused);
-  /// The same for a list, whose neutral value is the empty list.
+  /// Like claim(), for a list; its neutral value is the empty list.
   const Tree* claim_list(const Field& field);
 
-  /// Notes the type that decides which fields exist. If the type was not chosen by the record itself, missing fields
-  /// have their defaults instead of their neutral values.
+  /// Notes the type that decides which fields exist. If an override of a record chose the type, missing fields have
+  /// their defaults instead of their neutral values.
   void note_type(const Tree& type);
 
   double quantity(const Tree& tree, const Field& field) const;
@@ -83,9 +83,9 @@ class MapReader : public Fields {
   /// Adds the number of items to the id. Returns whether the items must follow.
   bool note_count(const Field& field, std::size_t count);
 
-  /// Writes a claimed field. `id_text` is its value in the id; "" if the id gets it in another way.
+  /// Writes a claimed field. `id_text` is its value in the id; "" if other code adds it to the id.
   void write(const Field& field, Tree value, std::string_view id_text);
-  /// The same for a scalar whose id text is its own text.
+  /// Writes a claimed scalar, whose text also goes into the id.
   void write(const Field& field, std::string text);
 
   /// Returns the properties for the map at `name`, which is the field or one of its items.
@@ -96,8 +96,8 @@ class MapReader : public Fields {
   std::string plugin_;    ///< plugin that has these options; "": none
   std::string beside_;    ///< option next to the plugin: Field::with_beside(); "": none
   std::string above_;     ///< path of the map around such a plugin
-  std::string id_above_;  ///< the same with former names of fields
-  bool silent_ = false;   ///< the options of a plugin are unknown, so that any key may be valid
+  std::string id_above_;  ///< `above_` with former names of fields
+  bool silent_ = false;   ///< whether the options of a plugin are unknown, so that any key may be valid
   std::string adopted_;   ///< adopted plugin (Fields::adopt()), whose options are among these; "": none
   ResolveNotes& notes_;
   Tree output_;
@@ -108,10 +108,11 @@ class MapReader : public Fields {
 
  private:
   bool is_known(const std::string& key) const;
-  /// Returns the neutral value of an option, which records have that are older than the option; null for the default.
+  /// Returns the neutral value of an option, which applies in records that are older than the option; null if it is the
+  /// default.
   const Tree* neutral(const Field& field, bool may_be_absent);
   double checked(double value, const Tree& tree, const Field& field) const;
-  /// Returns the path of an option of that name in a group below; "" if there is none.
+  /// Returns the path of an option called `key` in a nested group; "" if there is none.
   std::string path_to(const std::string& key) const;
   /// `known`: candidates for the hint.
   [[noreturn]] void refuse_unknown(const Tree::Entry& entry, const std::vector<std::string>& known) const;

@@ -16,7 +16,8 @@
 namespace palpate {
 namespace {
 
-/// A unit. Its factor is a power of ten if possible, because moving the decimal point in the text is exact.
+/// A unit with its factor. The factor is a power of ten if possible, because moving the decimal point in the text is
+/// exact.
 struct UnitName {
   std::string_view name;
   Unit unit;
@@ -72,7 +73,7 @@ struct Dimension {
   const char* example;
 };
 
-/// In the order of Unit.
+/// Names in the order of Unit.
 constexpr std::array kDimensions{
     Dimension{"number", "a plain number"},
     Dimension{"length", "a length like '1.7 cm'"},
@@ -223,7 +224,7 @@ std::int64_t read_integer(const Tree& tree, const std::string& name) {
 }
 
 std::string write_quantity(double value, Unit unit) {
-  // All units that are written are SI units, so that no factor is needed.
+  // Quantities are always written in SI units, so no factor is needed.
   const std::string number = fmt::format("{}", value);
   const std::string symbol = unit_symbol(unit);
   return symbol.empty() ? number : number + " " + symbol;

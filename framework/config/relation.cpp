@@ -8,7 +8,7 @@
 namespace palpate {
 namespace {
 
-/// In the order of Relation.
+/// Operators in the order of Relation.
 constexpr std::array<std::string_view, 6> kSigns{">=", ">", "<=", "<", "==", "!="};
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The comparison of a value with a bound, for expectations, conditions on jobs, stop rules and choices.
+// Compares a value with a bound, for expectations, conditions on jobs, stop rules and choices.
 #pragma once
 
 #include <optional>

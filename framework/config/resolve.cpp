@@ -14,21 +14,21 @@
 namespace palpate {
 namespace {
 
-/// The value of a key that the config lacks.
+/// Value used for a key that the config lacks.
 const Tree kNothing;
 
 /// Returns the path of a file that a config names at `place`: see Field::names_file().
 std::string found_from(const SourceLocation& place, const std::string& file) {
   namespace fs = std::filesystem;
   constexpr int kMostLevels =
-      6;  // levels from the config of a job up to the folder of the command that started the sweep
+      6;  // number of levels from the config of a job up to the folder in which the sweep was started
   std::error_code none;
-  const bool is_in_file = place.file != nullptr && place.line > 0;  // not on a command line
+  const bool is_in_file = place.file != nullptr && place.line > 0;  // false on a command line
   if (file.empty() || !is_in_file || fs::path(file).is_absolute() || fs::exists(file, none)) return file;
   fs::path folder = (fs::current_path() / *place.file).lexically_normal();
   for (int level = 0; level < kMostLevels && folder.has_relative_path(); ++level) {
     folder = folder.parent_path();
-    // Links are not followed, because a record of a stranger must not lead to other files.
+    // Links are not followed, because a record from another user must not lead to other files.
     if (fs::is_regular_file(fs::symlink_status(folder / file, none))) return (folder / file).string();
   }
   return file;
@@ -259,7 +259,7 @@ class Resolver final : public MapReader {
     if (fields.silent_) return;
     try {
       plugins_.describe(choice.kind, choice.type, fields);
-    } catch (const Error& trouble) {  // the plugin source has no place
+    } catch (const Error& trouble) {  // errors of the plugin source have no place
       if (!trouble.where().empty()) throw;
       throw Error(place, trouble.reason(), trouble.hint(), trouble.kind());
     }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// From a composed config to checked options and the resolved config, which has the final value of every field and
-// nothing else.
+// Converts a composed config to checked options and to the resolved config, which contains exactly the final values of
+// all fields.
 #pragma once
 
 #include "config/tree.hpp"
@@ -36,10 +36,11 @@ struct ResolveNotes {
     std::string path;   ///< dotted, for example "kernel.length_scale"
     std::string place;  ///< "file:line:column", "command line", or "default"
   };
-  std::vector<Origin> origins;  ///< of each value, in the order of the resolved config
-  std::vector<Origin> dropped;  ///< options that a type lacks which was chosen later
+  std::vector<Origin> origins;  ///< origin of each value, in the order of the resolved config
+  std::vector<Origin> dropped;  ///< options that were set for another type and that the final type lacks
   PluginNames plugins;          ///< all plugins of the config
-  /// Lines `path=value` of all values that affect the results of a run, in the order of the fields: see identity_of().
+  /// Lines `path=value` of all values that affect the results of a run, in the order of the fields: see
+  /// identity_text().
   std::vector<std::string> identity;
   std::optional<Error> missing;  ///< first missing option; resolve() throws it
 };
@@ -52,9 +53,9 @@ void check_beside(const Tree& group, const std::string& plugin, const std::strin
 /// key, wrong type, missing unit or value out of range. A missing option is reported last, because an unknown key may
 /// be its misspelt name.
 ///
-/// `elsewhere`: keys at the top that other code reads; hints may name them. In a map with Tree::complete, a missing
-/// option has its neutral value (Field::neutral()). A missing option without a neutral value is an error, unless it is
-/// not part of the id.
+/// `elsewhere` lists top-level keys that other code reads; hints may contain them. In a map with Tree::complete, a
+/// missing option has its neutral value (Field::neutral()). A missing option without a neutral value is an error,
+/// unless it is not part of the id.
 Tree resolve(Options& options, const Tree& input, const PluginSource& plugins, ResolveNotes& notes,
              const std::vector<std::string>& elsewhere = {});
 

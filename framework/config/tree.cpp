@@ -110,7 +110,7 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
   return d[a.size()][b.size()];
 }
 
-/// Returns the shortest known name that contains `name`, as first_hit_tap contains hit; "" if there is none.
+/// Returns the shortest known name that contains `name`: first_hit_tap for hit. Returns "" if there is none.
 std::string longer_form(std::string_view name, const std::vector<std::string>& known) {
   constexpr std::size_t kLeast = 3;
   std::string best;

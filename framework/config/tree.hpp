@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A config as a tree of scalars, lists and maps with their places. Configs, records and sweeps are trees in all other
-// code; only yaml*.cpp and json.cpp handle the formats.
+// A config as a tree of scalars, lists and maps with their source locations. Only yaml*.cpp and json.cpp handle YAML
+// and JSON; all other code uses trees for configs, records and sweeps.
 #pragma once
 
 #include <initializer_list>
@@ -25,7 +25,7 @@ struct SourceLocation {
 /// Returns "file:line:column" of the position after `bytes` bytes of a file's text.
 std::string place_in(const std::string& file, std::string_view text, std::size_t bytes);
 
-/// Priority of a source: the value of the highest layer counts. Groups under `defaults` have the layers from 0 on, in
+/// Priority of a source: the value on the highest layer is used. Groups in `defaults` have the layers from 0 on, in
 /// their order.
 using Layer = int;
 constexpr Layer kGroupLayer = 0;
@@ -39,13 +39,13 @@ struct Tree {
   struct Entry;
 
   Kind kind = Kind::null;
-  std::string text;            ///< of a scalar, as written
-  bool quoted = false;         ///< the scalar was in quotes, so that it is a text even if it looks like a number
-  std::vector<Tree> items;     ///< of a list
-  std::vector<Entry> entries;  ///< of a map, in the written order; keys are unique
+  std::string text;            ///< text of a scalar, as written
+  bool quoted = false;         ///< whether the scalar was in quotes; it is then a text even if it looks like a number
+  std::vector<Tree> items;     ///< items of a list
+  std::vector<Entry> entries;  ///< entries of a map, in the written order; keys are unique
   SourceLocation place;
   Layer layer = kFileLayer;
-  bool complete = false;  ///< a map of a record, which has all options of the version that wrote it
+  bool complete = false;  ///< whether this is a map of a record; it then has all options of the version that wrote it
 
   Tree() = default;
   explicit Tree(Kind of) : kind(of) {}
@@ -80,16 +80,16 @@ struct Tree {
 
   /// Sets the layer of this tree and all values within it.
   void set_layer(Layer layer);
-  /// Moves this tree and all values within it by `steps` layers, so that their order remains.
+  /// Adds `steps` to the layers of this tree and of all values within it, which keeps their order.
   void shift_layer(int steps);
 
   /// Merges `upper` into this tree. Maps are merged key by key; any other value is replaced if the layer of `upper` is
   /// not lower. A key has the place of its latest source.
   void merge(const Tree& upper);
 
-  /// Returns one line of text that is the same for equal values, whatever their places.
+  /// Returns one line of text that is the same for equal values, even if their places differ.
   std::string canonical() const;
-  /// Appends that text to `out`.
+  /// Appends the text of canonical() to `out`.
   void append_canonical(std::string& out) const;
 
  private:
@@ -98,13 +98,13 @@ struct Tree {
     Tree* holder;
     Tree& value;
   };
-  /// Returns the value of at_path() and its container.
+  /// Returns the value as at_path() does, together with its container.
   Slot slot(std::string_view path, const SourceLocation& asker);
 };
 
 struct Tree::Entry {
   std::string key;
-  SourceLocation place;  ///< of the key
+  SourceLocation place;  ///< place of the key
   Tree value;
 };
 
@@ -123,8 +123,8 @@ inline constexpr const char* kNameHint = "a name has letters, digits, '_' and '-
 /// Returns the known name that is most similar to `name`; "" if none is similar.
 std::string nearest(std::string_view name, const std::vector<std::string>& known);
 
-/// Returns a hint: "did you mean 'x'?" with the most similar name, or else with the shortest name that contains `name`.
-/// Without such a name, the hint is "known: a, b, c", or "" if nothing is known.
+/// Returns the hint "did you mean 'x'?" with the most similar name, or else with the shortest name that contains
+/// `name`. Without such a name, returns "known: a, b, c", or "" if `known` is empty.
 std::string suggestion(std::string_view name, const std::vector<std::string>& known);
 
 }  // namespace palpate

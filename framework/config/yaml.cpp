@@ -21,7 +21,7 @@
 namespace palpate {
 namespace {
 
-/// Limit of the values after the expansion of aliases. Nine lines of aliases can expand to 10^9 values.
+/// Limit of the values after the expansion of aliases. For example, nine lines of aliases can expand to 10^9 values.
 constexpr int kMaxValues = 100'000;
 constexpr std::size_t kMaxDepth = 100;
 /// Limit of all texts after the expansion of aliases. to_yaml() writes at most a quarter of this.
@@ -38,13 +38,13 @@ bool is_closed(std::string_view text) {
       ++i;
     } else if (text[i] == quote) {
       if (quote == '"' || i + 1 == text.size() || text[i + 1] != quote) return true;
-      ++i;  // two quotes stand for one
+      ++i;  // a doubled quote is an escaped quote
     }
   }
   return false;
 }
 
-/// The text contains a second document.
+/// Thrown if the text contains a second document.
 class SecondDocument : public YAML::Exception {
  public:
   explicit SecondDocument(const YAML::Mark& at) : Exception(at, "a second document begins here") {}
@@ -53,7 +53,8 @@ class SecondDocument : public YAML::Exception {
 /// Builds the tree of a text from the events of the parser.
 class Reader final : public YAML::EventHandler {
  public:
-  /// Without `lines`, places name only the file, because line numbers within a word of the command line would confuse.
+  /// Without `lines`, places name only the file, because line numbers are meaningless for an argument of the command
+  /// line.
   Reader(const std::string& file, bool lines) : file_(std::make_shared<const std::string>(file)), lines_(lines) {
     tree_.place.file = file_;
   }
@@ -61,7 +62,7 @@ class Reader final : public YAML::EventHandler {
   /// Returns the tree of the only document; null for an empty document. Throws YAML::Exception if the text is not valid
   /// YAML, and else Error for the first rejected part.
   Tree read(const std::string& text) {
-    // Marks do not count the byte order mark.
+    // yaml-cpp's positions do not count the byte order mark.
     constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
     text_ = std::string_view(text).substr(text.rfind(kByteOrderMark, 0) == 0 ? kByteOrderMark.size() : 0);
     std::istringstream in(text);
@@ -76,7 +77,7 @@ class Reader final : public YAML::EventHandler {
   void OnDocumentEnd() override {}
   void OnNull(const YAML::Mark& mark, YAML::anchor_t anchor) override { put(mark, "", anchor, Tree()); }
   void OnAlias(const YAML::Mark& mark, YAML::anchor_t anchor) override {
-    if (refused_) return;                      // an alias may stand for many values
+    if (refused_) return;                      // stop after an error, because an alias may expand to many values
     const auto found = anchors_.find(anchor);  // an alias within its own anchor is not found
     if (found == anchors_.end()) refuse(place(mark), "nested too deeply", "at most 100 levels");
     put(mark, "", YAML::NullAnchor, found == anchors_.end() ? Tree() : found->second);
@@ -101,7 +102,7 @@ class Reader final : public YAML::EventHandler {
   struct Open {
     Tree* tree;  ///< null after an error
     YAML::anchor_t anchor;
-    bool has_key;  ///< of a map: the next value belongs to its last key
+    bool has_key;  ///< the tree is a map, and the next value belongs to its last key
   };
 
   void close() {
@@ -122,7 +123,7 @@ class Reader final : public YAML::EventHandler {
       bool& has_key = open_.back().has_key;
       if (around.is_map() && !std::exchange(has_key, !has_key)) return add_key(around, value);
       slot = around.is_map() ? &around.entries.back().value : &around.items.emplace_back();
-      // The mark of an absent value (`key:`) may be on a later line, so that the place of the key is used.
+      // yaml-cpp may put an absent value (`key:`) on a later line, so the place of the key is used.
       if (around.is_map() && value.kind == Tree::Kind::null) value.place = around.entries.back().place;
     }
     // yaml-cpp sets "?" for plain scalars and "!" for quoted ones and blocks. All other tags come from the text.
@@ -186,9 +187,9 @@ class Reader final : public YAML::EventHandler {
   std::string_view text_;
   int documents_ = 0;  ///< number of documents read
   int values_ = 0;
-  std::size_t text_bytes_ = 0;  ///< total of all texts
+  std::size_t text_bytes_ = 0;  ///< total bytes of all texts
   Tree tree_;
-  std::vector<Open> open_;  ///< the innermost is the last
+  std::vector<Open> open_;  ///< open lists and maps, the innermost last
   std::map<YAML::anchor_t, Tree> anchors_;
   std::optional<Error> refused_;
 };
@@ -231,7 +232,7 @@ Tree parse_yaml(const std::string& text, const std::string& file) {
     const std::string at = mark.is_null() ? file : fmt::format("{}:{}:{}", file, mark.line + 1, mark.column + 1);
     if (dynamic_cast<const SecondDocument*>(&trouble) != nullptr)
       throw Error(at, trouble.msg, "remove a '---' or a stray character here or above");
-    // yaml-cpp's own message would be "bad file".
+    // yaml-cpp's own message for deep nesting would be "bad file".
     if (dynamic_cast<const YAML::DeepRecursion*>(&trouble) != nullptr)
       throw Error(at, "nested too deeply", "at most 100 levels");
     throw Error(at, "not valid YAML: " + trouble.msg,
@@ -266,10 +267,10 @@ Tree read_yaml(const std::filesystem::path& path, Origin origin) {
 }
 
 void check_readable(const Tree& config, const std::string& file) {
-  // Writing takes longer than resolving, and few configs are near the limit.
+  // Small configs pass without a test, because to_yaml() takes longer than resolving the config.
   constexpr std::size_t kSmall = 1 << 16;
   if (config.canonical().size() < kSmall) return;
-  int values = 0;  // as Reader counts them
+  int values = 0;  // number of values, counted as in Reader
   for_all(config, [&](const Tree&) { ++values; });
   if (to_yaml(config).size() <= kMostConfigBytes && values <= kMaxValues) return;
   throw Error(file, "too large after the defaults are filled in",
@@ -282,7 +283,7 @@ Tree parse_value(const std::string& text, const std::string& file) {
   if (utf8_prefix(text) < text.size()) throw Error(file, "not UTF-8", "write it in UTF-8");
   try {
     if (!is_block) return Reader(file, false).read(text);
-  } catch (const YAML::Exception&) {  // the value is a text: see below
+  } catch (const YAML::Exception&) {  // an invalid value is a text: see below
   }
   Tree tree = Tree::scalar(text, true);
   tree.place.file = std::make_shared<const std::string>(file);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Reading and writing of YAML, the only interface to yaml-cpp. Stricter than the library: duplicate keys, merge keys,
+// Reads and writes YAML; no other code uses yaml-cpp. The reader is stricter than yaml-cpp: duplicate keys, merge keys,
 // several documents and excessive aliases are errors with a place.
 #pragma once
 
@@ -27,11 +27,13 @@ Tree parse_value(const std::string& text, const std::string& file);
 
 /// Returns block-style YAML that parses to the same tree.
 std::string to_yaml(const Tree& tree);
-/// The same, with the place of each value, or `default`, as a comment at the end of its line: `length_scale: 0.017 m  #
-/// configs/kernel/rbf.yaml:3:17`. Without places if the text would be too large for a config.
+/// Returns YAML like to_yaml(), with a comment at the end of each line that gives the place of the value, or `default`.
+/// Example: `length_scale: 0.017 m # configs/kernel/rbf.yaml:3:17`. The places are left out if the text would be too
+/// large for a config.
 std::string to_yaml_with_places(const Tree& tree);
 
-/// Returns the places in these comments by line number, from 1; "" at 0 and for lines without a comment.
+/// Returns the places in the comments of to_yaml_with_places(), by line number from 1. Index 0 and lines without a
+/// comment have "".
 std::vector<std::string> places_of_lines(std::string_view text);
 
 }  // namespace palpate

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The writing of YAML: to_yaml(), and the comments with places.
+// Writes YAML: to_yaml(), and the comments with places.
 #include "config/yaml.hpp"
 #include "reading/reading.hpp"
 
@@ -11,7 +11,7 @@
 namespace palpate {
 namespace {
 
-/// Returns a scalar with special characters as yaml-cpp writes it, in a block or within brackets.
+/// Returns the YAML that yaml-cpp writes for a scalar with special characters, in a block or within brackets.
 std::string odd_scalar(const Tree& scalar, bool in_brackets) {
   YAML::Emitter out;
   if (in_brackets) out << YAML::Flow << YAML::BeginSeq;
@@ -27,7 +27,8 @@ bool is_alnum(char c) { return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') 
 
 bool is_one_of(char c, std::string_view these) { return these.find(c) != std::string_view::npos; }
 
-/// Returns whether a text is a word, name or number that never needs quotes. For other texts, yaml-cpp decides.
+/// Returns whether a text is a word, name or number that never needs quotes. For other texts, yaml-cpp decides whether
+/// quotes are needed.
 bool is_plain_word(std::string_view text) {
   if (text.empty() || text.back() == ' ' || text == "null" || text == "Null" || text == "NULL") return false;
   const bool is_number = text.front() == '-' && text.size() > 1 && (is_alnum(text[1]) || text[1] == '.');
@@ -74,7 +75,8 @@ constexpr std::string_view kComment = "  # ";
 
 const SourceLocation kNowhere;
 
-/// Appends the place of a value, or of the list around it if the value has none. A map has no place of its own here.
+/// Appends the place of a value, or of the list around it if the value has none. Appends nothing for a map, because its
+/// values have their own places.
 void append_place(std::string& out, const Tree& value, const SourceLocation& around) {
   if (value.is_map()) return;
   const SourceLocation& known = value.place.file ? value.place : around;
@@ -94,7 +96,7 @@ void append_place(std::string& out, const Tree& value, const SourceLocation& aro
   if (known.line > 0) out.append(":").append(std::to_string(known.line)).append(":") += std::to_string(known.column);
 }
 
-/// Appends a tree whose first line begins at `column`, the present end of `out`. Adds places if `around` is not null.
+/// Appends a tree whose first line begins at `column`, the current end of `out`. Adds places if `around` is not null.
 void append_block(std::string& out, const Tree& tree, std::size_t column, const SourceLocation* around) {
   if (is_in_line(tree)) {
     append_in_line(out, tree);

@@ -8,7 +8,8 @@
 
 namespace palpate {
 
-/// Returns their manifests. Defined in belief/builtin_plugins.cpp; the belief `height_map` is the only one.
+/// Returns the manifests of these plugins. The only one is the belief `height_map`. The function is defined in
+/// belief/builtin_plugins.cpp.
 const std::vector<PluginManifest>& builtin_plugins();
 
 }  // namespace palpate

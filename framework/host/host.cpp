@@ -42,8 +42,8 @@ namespace {
   throw Error("", fmt::format("{}: {}: {}", file.string(), step, reason), hint);
 }
 
-/// Returns the message of dlerror from the message of Boost, "<function> failed (dlerror system message: <text>):
-/// <unrelated errno text>".
+/// Extracts the text of dlerror from a message of Boost, which has the form "<function> failed (dlerror system message:
+/// <text>): <unrelated errno text>".
 std::string dlerror_part(const std::string& what) {
   const std::string mark = "dlerror system message: ";
   const auto begin = what.find(mark);
@@ -75,8 +75,8 @@ std::string read_library(const fs::path& file) {
   return std::move(reading.text);
 }
 
-/// Throws Error for an incomplete library. dlopen maps the segments that the headers of a file name, and a file that
-/// ends earlier would kill the process (SIGBUS). dlopen itself reports other faults of the headers.
+/// Throws Error for an incomplete library. dlopen maps the segments listed in the headers of a file; if the file ends
+/// earlier, the process is killed (SIGBUS). dlopen itself reports other faults of the headers.
 void check_complete(const fs::path& file, const std::string& bytes) {
   const auto size = std::uint64_t{bytes.size()};
   const auto holds = [size](std::uint64_t offset, std::uint64_t count) {
@@ -144,7 +144,7 @@ void guarded(const Tree* options, const std::string& plugin, const char* failure
       throw Error(option->place.file ? option->place.text() : place,
                   fmt::format("{}: {}: {}", plugin, refusal.where(), refusal.reason()), refusal.hint(), refusal.kind());
     }
-    // The plugin's own place, such as a file of its own, is nearer to the cause than the config.
+    // If the plugin gives a place, such as a file that it reads, this place is nearer to the cause than the config.
     if (!refusal.where().empty()) throw Error(refusal.where(), refusal.reason(), refusal.hint(), refusal.kind());
     throw Error(place, fmt::format("{}: {}", plugin, refusal.reason()), refusal.hint(), refusal.kind());
   } catch (const std::exception& trouble) {
@@ -154,7 +154,7 @@ void guarded(const Tree* options, const std::string& plugin, const char* failure
   }
 }
 
-/// Returns the manifest of a plugin that the program contains; null if it contains none of that name.
+/// Returns the manifest of a plugin that the program contains; null if it contains no plugin with this name.
 const PluginManifest* builtin(const std::string& kind, const std::string& name) {
   for (const PluginManifest& one : builtin_plugins()) {
     if (one.kind == kind && one.name == name) return &one;
@@ -333,7 +333,7 @@ std::shared_ptr<void> PluginHost::create(const PluginChoice& choice, const Conte
          [&](Fields& fields) { object = holder->manifest->create(fields, context); });
   });
   if (holder->file.empty()) return {object, holder->manifest->destroy};
-  // The deleter holds the library, which so outlives the object.
+  // The deleter holds the library, so that the library outlives the object.
   return wrap_plugin(choice.kind, choice.type, {object, [holder](void* gone) { holder->manifest->destroy(gone); }});
 }
 
@@ -345,7 +345,7 @@ std::shared_ptr<const Motions> PluginHost::motions(const PluginChoice& choice, c
     fill(*choice.options, *this, choice.kind, [&](Fields& fields) { made = holder->manifest->motions(fields, scene); });
   });
   if (made == nullptr) return nullptr;
-  // The object is deleted before its library is closed, as above.
+  // Here, too, the deleter holds the library, so that the library outlives the object.
   return wrap_plugin(choice.kind + "/" + choice.type,
                      std::shared_ptr<Motions>(made, [holder](const Motions* gone) { delete gone; }));
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The plugin host: finds, checks and loads libraries, and creates the objects of plugins. The only user of dynamic
-// loading; all other code sees the interfaces in include/palpate.
+// The plugin host finds, checks and loads libraries, and creates the objects of plugins. No other code loads libraries;
+// it only uses the interfaces in include/palpate.
 #pragma once
 
 #include "config/resolve.hpp"
@@ -32,22 +32,23 @@ struct LoadedPlugin {
   std::string kind;
   std::string name;
   std::filesystem::path file;
-  std::string hash;  ///< of the loaded parts of the file: see loaded_hash.hpp
+  std::string hash;  ///< hash of the loaded parts of the file: see loaded_hash.hpp
 };
 
-/// Returns kind and name of all plugins of a build, built or not, as its plugin folder lists them. Empty for any other
-/// folder, such as an installed one.
+/// Returns kind and name of all plugins of a build, even if they are not built yet, from the list in its plugin folder.
+/// Returns nothing for any other folder, such as an installed one.
 PluginNames plugins_of_build(const std::filesystem::path& folder);
 
-/// Loads libraries and keeps them until its end. Objects created by a library keep it longer if necessary. Thread-safe.
+/// Loads libraries and keeps them loaded for its lifetime. The objects that a library created keep it loaded even
+/// longer. The class is thread-safe.
 class PluginHost final : public PluginSource, public PluginFactory {
  public:
   /// Searches for <folder>/<kind>/<name>.so in each of `folders`.
   explicit PluginHost(const std::vector<std::filesystem::path>& folders);
   ~PluginHost() override;
 
-  /// Sets the source of group names, which users may write instead of a plugin's name. Errors about unknown names use
-  /// it for their hints. Call this before other threads use the host.
+  /// Sets a function that returns group names, which users may write instead of a plugin's name. Errors about unknown
+  /// names use it for their hints. Call this before other threads use the host.
   void set_group_names(std::function<std::vector<std::string>(const std::string& kind)> names) {
     group_names_ = std::move(names);
   }
@@ -66,21 +67,21 @@ class PluginHost final : public PluginSource, public PluginFactory {
   /// Throws Error as create() does.
   std::shared_ptr<const Motions> motions(const PluginChoice& choice, const Scene& scene) const override;
 
-  /// Returns all libraries, also broken ones, sorted and each name once. `kind` and `name` may be "" for all.
+  /// Returns all libraries, including broken ones, sorted, with each name once. `kind` and `name` may be "" for all.
   std::vector<PluginListing> list(const std::string& kind, const std::string& name) const;
 
   /// Returns the sorted names of a kind, including plugins that are not built yet. Opens no library.
   std::vector<std::string> names(const std::string& kind) const;
 
-  /// Returns file and hash of those of these plugins that are libraries, in their order, and loads them if necessary.
-  /// Throws Error.
+  /// Returns file and hash of all libraries among these plugins, in their order, and loads them if necessary. Throws
+  /// Error.
   std::vector<LoadedPlugin> loaded(const PluginNames& plugins) const;
 
-  /// Returns whether one of these plugins moves something that exists only once, such as an arm. Loads them if
-  /// necessary. Throws Error.
+  /// Returns whether one of these plugins moves a device that only one run can use at a time, such as an arm. Loads the
+  /// plugins if necessary. Throws Error.
   bool one_at_a_time(const PluginNames& plugins) const;
 
-  /// Returns whether a folder has a library of that name, whatever its content.
+  /// Returns whether a folder has a library with this name; the library may be broken.
   bool has(const std::string& kind, const std::string& name) const;
 
   /// Returns all plugin kinds.
@@ -88,7 +89,8 @@ class PluginHost final : public PluginSource, public PluginFactory {
 
  private:
   class Library;
-  /// Loads a library, lists its options, and closes it again. Returns its summary. For a child process that then ends.
+  /// Loads a library, lists its options, and closes it again. Returns its summary. Call this only in a child process
+  /// that ends afterwards.
   std::string look(const std::string& kind, const std::string& name) const;
   std::shared_ptr<const Library> library(const std::string& kind, const std::string& name) const;
   std::vector<std::pair<std::string, std::filesystem::path>> files(const std::string& kind) const;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The list of all libraries. Each is loaded in its own child process, because a damaged library may crash or hang it.
+// Lists all libraries. Each library is loaded in its own child process, which a damaged library may crash or hang.
 #include "children/child_process.hpp"
 #include "host/builtin.hpp"
 #include "host/host.hpp"
@@ -27,7 +27,7 @@ constexpr double kLoadSeconds = 5.0;  ///< s
 constexpr int kSound = 100;
 constexpr int kBroken = 101;
 
-/// Silences the child process and its crashes.
+/// Suppresses the output of the child process and its core dumps.
 void silence_child() {
   const rlimit no_core{0, 0};
   ::setrlimit(RLIMIT_CORE, &no_core);
@@ -44,7 +44,7 @@ std::string trouble_of(int status) {
   return ended == kSound || ended == kBroken ? "" : fmt::format("ended the program with status {}", ended);
 }
 
-/// Sets the summary or the error of a library in `row`. `look` runs in a child process.
+/// Runs `look` in a child process, and stores the summary or the error of a library in `row`.
 void load_in_child(const std::function<std::string()>& look, PluginListing& row) {
   const std::unique_ptr<ChildProcess> child = ChildProcess::fork([&](const ChildProcess::Say& say) {
     silence_child();

@@ -70,7 +70,7 @@ bool are_finite(const std::vector<Value>& values) {
   return std::all_of(values.begin(), values.end(), [](const Value& one) { return are_finite(one); });
 }
 
-/// An object of a plugin behind its interface. All calls go through this class.
+/// Base class of the wrappers: holds the object of a plugin, and forwards all calls to it.
 template <class Interface>
 class Wrapper : public Interface {
  public:
@@ -111,7 +111,7 @@ class Wrapper : public Interface {
     return values;
   }
 
-  /// Returns `belief` with the access that the plugin has declared.
+  /// Returns a view of `belief` that allows only the access that the plugin has declared.
   Declared declared(const BeliefView& belief) const { return Declared(belief, call(&Interface::reads), name_); }
 
  private:
@@ -153,7 +153,7 @@ class WrappedKernel final : public Wrapper<Kernel> {
     require("derivatives()", slopes);
   }
   bool has_gradient() const override { return call(&Kernel::has_gradient); }
-  // Views go by value, as in covariance(). NOLINTNEXTLINE(performance-unnecessary-value-param)
+  // Views are passed by value, as in covariance(). NOLINTNEXTLINE(performance-unnecessary-value-param)
   void gradient_covariance(const VectorView& distances, VectorOut across, VectorOut along) const override {
     call(&Kernel::gradient_covariance, distances, across, along);
     require("gradient_covariance()", across);

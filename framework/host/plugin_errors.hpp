@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The wrapper of plugins: errors get the name of the plugin, and its results are checked.
+// A wrapper around plugins that adds the name of the plugin to errors and checks its results.
 #pragma once
 
 #include <memory>
@@ -10,13 +10,13 @@ namespace palpate {
 class Motions;
 
 /// Returns `object`, which implements the interface of `kind`, behind a wrapper of the same interface. Any exception
-/// becomes an Error with the place <kind>/<type>, whose texts are copies, because the code of the exception belongs to
-/// the library. A result that is not finite ends the run if the interface demands a finite one, except for scores and
-/// contacts, which their users check.
+/// becomes an Error with the place <kind>/<type>. Its texts are copies, because the code of the exception belongs to
+/// the library. A result that is not finite ends the run if the interface requires a finite one. Scores and contacts
+/// are exceptions, because the code that uses them checks them.
 std::shared_ptr<void> wrap_plugin(const std::string& kind, const std::string& type,
                                   const std::shared_ptr<void>& object);
 
-/// The same for the motions of a backend. `name` is <kind>/<type>.
+/// Returns the motions of a backend in such a wrapper. `name` is <kind>/<type>.
 std::shared_ptr<const Motions> wrap_plugin(const std::string& name, const std::shared_ptr<Motions>& motions);
 
 }  // namespace palpate

@@ -36,7 +36,7 @@ bool in_children(std::size_t count, int workers, const std::function<void(std::s
   for (std::size_t first = 0; first < step; ++first) {
     owned.push_back(ChildProcess::fork([&](const ChildProcess::Say& say) {
       try {
-        // Neighbouring items take similar times, so that a stride of `step` lets all children end together.
+        // Neighbouring items take similar times, so with a stride of `step` all children end at about the same time.
         for (std::size_t i = first; i < count; i += step) {
           work(i);
           say(kDone);
@@ -53,7 +53,7 @@ bool in_children(std::size_t count, int workers, const std::function<void(std::s
   }
   std::size_t done = 0;
   for (bool any = step > 0; any;) {
-    constexpr double kPollSeconds = 0.1;  // s between two looks
+    constexpr double kPollSeconds = 0.1;  // s between two calls of listen()
     ChildProcess::listen(children, kPollSeconds);
     const std::size_t before = std::exchange(done, 0);
     any = false;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Distribution of work among child processes, for work whose only results are files. Plugins need not be thread-safe.
+// Distributes work among child processes. The work may return results only as files. Plugins need not be thread-safe.
 #pragma once
 
 #include <atomic>

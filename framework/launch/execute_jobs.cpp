@@ -23,7 +23,7 @@ bool is_gone(const Sweep& sweep) {
 /// The state of a job.
 struct JobState {
   RunStatus::State state = RunStatus::State::absent;
-  int attempts = 0;  ///< only of a failed job
+  int attempts = 0;  ///< number of attempts of a failed job
   std::string reason;
 };
 
@@ -84,7 +84,7 @@ bool execute_jobs(Launcher& launcher, const Sweep& sweep, JobStates begun, const
     if (gone) continue;
     for (const std::size_t job : state.returned) {
       const std::filesystem::path directory = job_directory(sweep, sweep.jobs[job]);
-      // Only the record counts, because other files follow the end of the record, and NFS may delay them by a minute.
+      // Only the record is read, because other files are written after its end, and NFS may delay them by a minute.
       const RunStatus now = read_ending(directory);
       const bool done = now.state == RunStatus::State::done;
       // On a full disk, not even the failure can be recorded.

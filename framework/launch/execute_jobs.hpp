@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The execution of a sweep: a launcher runs the open jobs, and the jobs' directories give their results.
+// Executes a sweep: a launcher runs the open jobs, and the results are read from the directories of the jobs.
 #pragma once
 
 #include "launch/launcher.hpp"
@@ -34,8 +34,8 @@ struct SweepFailure {
 /// The states of some jobs, according to their directories.
 struct JobStates {
   std::map<RunStatus::State, int> counts;
-  std::vector<std::size_t> open;       ///< jobs that are neither done nor failed, nor known to be running
-  std::vector<SweepFailure> failures;  ///< in the order of the jobs, like `open`
+  std::vector<std::size_t> open;       ///< jobs to run: neither done, nor failed, nor known to be running
+  std::vector<SweepFailure> failures;  ///< failed jobs; like `open`, in the order of the jobs
 };
 
 /// The further checks of read_job_states(). `missing_files`: a done job without all its files, as after a power cut,
@@ -47,7 +47,7 @@ enum class JobCheck { nothing, missing_files, running };
 JobStates read_job_states(const Sweep& sweep, const std::vector<std::size_t>& jobs,
                           JobCheck also = JobCheck::missing_files);
 
-/// Makes failed jobs open again, whatever their number of attempts.
+/// Makes all failed jobs open again, regardless of their number of attempts.
 void reopen_failed(JobStates& standing);
 
 /// Runs the open jobs with `launcher`, and waits until all have been returned. After `interrupted`, the jobs are

@@ -42,13 +42,13 @@ JobEnd attempt_job(const RunEnvironment& environment, const std::shared_ptr<RunD
     const ResolvedConfig config = load_run(environment.host, directory);
     end = Run::resume(environment, config, held, options)->run().interrupted ? JobEnd::interrupted : JobEnd::done;
   });
-  if (trouble) {  // an error ends only this job, not the sweep
+  if (trouble) {  // the error fails this job, but the sweep continues
     // Another process uses the arm. The job has not failed and stays open.
     if (trouble->kind() == Error::Kind::busy) throw *trouble;
     if (!is_there(directory / "config.yaml")) throw *trouble;
     // The job is done, and only files made from its record are missing, which is not a failure.
     if (read_ending(directory).state == RunStatus::State::done) throw *trouble;
-    // An error before the start of the run has left no end in the record.
+    // An error before the start of the run leaves no line `end` in the record, so the failure is recorded here.
     write_failure(*held, trouble->what());
   }
   return end;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-// The execution of one job of a sweep, at most once to its end, however many processes try. The guarantee needs no
-// cooperation of launchers:
+// Executes one job of a sweep. The job runs to its end at most once, even if several processes try to run it. This
+// guarantee does not depend on the launchers:
 //
-// 1. The process takes the lock of the job's record, or the job is busy.
-// 2. The last line of the record shows whether anything is left to do.
-// 3. The process appends the attempt, and starts the run or resumes it after its last recorded tap.
+// 1. The process locks the job's record; if another process has the lock, the job is busy.
+// 2. The last line of the record shows whether the job has already ended.
+// 3. The process appends a line `attempt`, and starts the run or resumes it after its last recorded tap.
 // 4. The line `end` is the result, and summary.json is its copy. A process that dies earlier leaves an unfinished run,
 //    which can be resumed.
 #pragma once
@@ -18,15 +18,16 @@ namespace palpate {
 
 /// The end of an attempt, also used as the exit status of the child process.
 enum class JobEnd {
-  done = 0,           ///< by this attempt or before
-  failed = 1,         ///< by this attempt or before; the record has the reason
+  done = 0,           ///< the job is done, by this attempt or an earlier one
+  failed = 1,         ///< the job has failed, in this attempt or an earlier one; the record has the reason
   unrecorded = 2,     ///< the end could not be recorded
   blocked = 3,        ///< the arm or the program is not available; the job stays open
   busy = 75,          ///< another process runs the job; nothing was done
-  interrupted = 130,  ///< by the user; the job can be resumed
+  interrupted = 130,  ///< the user interrupted the job, which can be resumed
 };
 
-/// Message of a child before it ends with `blocked`, because a plugin may end the child with the same status.
+/// Message that a child writes before it ends with `blocked`. It is needed because a plugin may end the child with the
+/// same status.
 inline constexpr const char* kBlocked = "blocked";
 
 /// Runs the job in `directory`, whose name is the job's id. Does nothing if the job is done, or has failed and

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // The interface of launchers, which run the jobs of a sweep on this machine or on a cluster. A launcher accepts jobs
-// and returns them. The directory of a job alone records whether the job is done, because schedulers err. The job
-// itself (launch/job.hpp) guarantees that it runs only once, also when several launchers hold it.
+// and reports when they have ended. Only the directory of a job shows whether the job is done, because schedulers may
+// report wrong states. The job itself (launch/job.hpp) guarantees that it runs only once, also when several launchers
+// hold it.
 //
 // A new launcher NAME is a file launch/NAME_launcher.cpp that defines the LauncherType NAME_launcher, and its name in
 // the table of palpate_sweep.cmake.
@@ -23,11 +24,12 @@ class Launcher {
  public:
   /// The result of poll().
   struct State {
-    std::vector<std::size_t> returned;  ///< jobs that ended or were given up since the last call
+    std::vector<std::size_t> returned;  ///< jobs that ended or were abandoned since the last call
     bool all_recorded = true;           ///< false: a returned job could not record its end or write its files
-    bool blocked = false;               ///< a job could not begin, for a reason that holds for all; no job is waiting
-    int running = 0;                    ///< number of jobs, as far as the launcher can see
-    int waiting = 0;                    ///< number of jobs
+    bool blocked =
+        false;        ///< a job could not start, for a reason that also applies to all other jobs; no job is waiting
+    int running = 0;  ///< number of running jobs, as far as the launcher can see
+    int waiting = 0;  ///< number of jobs
     bool empty_handed() const { return running == 0 && waiting == 0; }
   };
 
@@ -41,7 +43,7 @@ class Launcher {
   /// waits. Throws Error if the state of the jobs can no longer be found out.
   virtual State poll(double seconds) = 0;
 
-  /// Stops running jobs after their present tap and drops waiting jobs. poll() still returns the running jobs.
+  /// Stops running jobs after their current tap and drops waiting jobs. poll() still returns the running jobs.
   virtual void cancel() = 0;
 
   /// Returns the command that ends the jobs that outlive this process; "" if no job does.
@@ -50,13 +52,13 @@ class Launcher {
 
 /// Options for the scheduler of a cluster.
 struct ClusterOptions {
-  std::string partition, time, account;  ///< in the form that the scheduler reads; "": the default of the cluster
+  std::string partition, time, account;  ///< texts for the scheduler; "": the default of the cluster
   std::vector<std::string> words{};      ///< further options of the scheduler, dashes included
 };
 
 struct LaunchOptions {
   int workers = 1;              ///< parallel jobs; on a cluster: parallel jobs of one task, each with its own core
-  ResumeOptions resume;         ///< of every job
+  ResumeOptions resume;         ///< options of every job
   int most_attempts = 3;        ///< starts per job; a job that was killed this often has failed
   bool wait_for_others = true;  ///< waits for jobs that other processes run, and runs them if those processes die
   // Only for clusters:
@@ -69,12 +71,12 @@ struct LaunchOptions {
 struct TaskArray {
   int id = 0;
   int tasks = 0;
-  int jobs = 0;  ///< of all tasks
+  int jobs = 0;  ///< number of jobs of all tasks
   std::filesystem::path logs;
   std::string doubt;  ///< message of the scheduler if no node can run the array now; else ""
 };
 
-/// What a launcher is made from. `environment` and `sweep` must outlive the launcher.
+/// Input for the construction of a launcher. `environment` and `sweep` must outlive the launcher.
 struct LaunchOrder {
   const RunEnvironment& environment;
   const Sweep& sweep;
@@ -85,13 +87,13 @@ struct LaunchOrder {
 /// An entry of the table of launchers.
 struct LauncherType {
   std::unique_ptr<Launcher> (*make)(const LaunchOrder& order);
-  /// Throws Error for options that this launcher rejects; null: it accepts all.
+  /// Throws Error for options that this launcher rejects. Null if the launcher accepts all options.
   void (*check_options)(const ClusterOptions& options) = nullptr;
-  /// Throws Error if this machine lacks the programs of the scheduler; null: none is needed.
+  /// Throws Error if this machine lacks the programs of the scheduler. Null if the launcher needs no programs.
   void (*check_installed)() = nullptr;
 };
 
-/// The launcher of this machine. All others are clusters, where jobs go on without this process.
+/// The launcher of this machine. All others are clusters, where jobs continue without this process.
 inline constexpr const char* kLocal = "local";
 
 /// The names in the table of launchers (palpate_sweep.cmake). A program needs no launcher to read them.

@@ -40,11 +40,11 @@ void LocalLauncher::submit(const std::vector<std::size_t>& jobs) {
 
 bool LocalLauncher::start(std::size_t job) {
   std::unique_ptr<ChildProcess> process = ChildProcess::fork([&](const ChildProcess::Say& say) -> int {
-    // The child needs its file descriptors for its own files.
+    // Close the pipes of other children, because this child needs the file descriptors for its own files.
     for (const Running& other : running_) other.process->forget();
     const JobEnd end = run(job);
     if (end == JobEnd::blocked) say(kBlocked);
-    // A full exit, unlike that of other children, because plugins must release things such as a robot's node.
+    // Use exit() and not _exit(), because plugins must release resources such as a ROS node.
     std::exit(static_cast<int>(end));
   });
   if (!process && !running_.empty()) return false;
@@ -59,7 +59,7 @@ JobEnd LocalLauncher::run(std::size_t job) const {
   JobEnd end = JobEnd::unrecorded;
   try {
     return run_job(order_.environment, directory_of(job), order_.options.resume);
-  } catch (const std::exception& trouble) {  // the error cannot be recorded, so that only the terminal gets it
+  } catch (const std::exception& trouble) {  // the error cannot be recorded, so it is only printed
     const auto* const error = dynamic_cast<const Error*>(&trouble);
     if (error != nullptr && error->kind() == Error::Kind::busy) end = JobEnd::blocked;
     // execute_jobs() reports a missing folder once for all jobs. fmt::print would throw if the terminal is closed.
@@ -85,7 +85,7 @@ Launcher::State LocalLauncher::poll(double seconds) {
   if (running_.empty() && later_.empty()) seconds = 0.0;
   ChildProcess::listen(processes, seconds);
   State state;
-  // The count includes jobs that have just ended, because others take their places at once.
+  // The count includes jobs that have just ended, because other jobs start at once in their place.
   state.running = static_cast<int>(running_.size());
   const auto ended =
       std::stable_partition(running_.begin(), running_.end(), [](const Running& one) { return !one.process->ended(); });

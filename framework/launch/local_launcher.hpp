@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The launcher of this machine: one forked child process per job, in which the plugins are already loaded. A crash ends
-// only the job's own child. The children end with this process, so that `resume` never meets a job that still runs.
+// only the job's own child. The children end with this process, so no job is still running when a user resumes the
+// sweep.
 #pragma once
 
 #include "children/child_process.hpp"
@@ -48,7 +49,7 @@ class LocalLauncher final : public Launcher {
   std::vector<std::size_t> later_;  ///< jobs that other processes run, to be tried again
   Clock::time_point again_;         ///< time of the next try
   std::vector<Running> running_;
-  std::map<std::size_t, int> kills_;  ///< per job
+  std::map<std::size_t, int> kills_;  ///< number of kills per job
   bool cancelled_ = false;
 };
 

@@ -24,7 +24,7 @@ namespace {
 struct Mount {
   std::string point;
   std::string type;
-  std::string options;  ///< of the file system, separated by commas
+  std::string options;  ///< mount options of the file system, separated by commas
 };
 
 /// Decodes \ooo, the kernel's form of blanks, line ends and backslashes in paths.
@@ -58,7 +58,7 @@ bool lies_in(const fs::path& folder, const fs::path& point) {
 }  // namespace
 
 void check_shared_locks(const fs::path& folder, std::string_view mountinfo) {
-  Mount holds;  // innermost mount; of several at the same point, the last
+  Mount holds;  // innermost mount around the folder; with several at the same point, the last one
   std::istringstream lines{std::string(mountinfo)};
   for (std::string line; std::getline(lines, line);) {
     const std::optional<Mount> mount = read_mount(line);

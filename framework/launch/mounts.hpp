@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The check that the nodes of a cluster see each other's file locks.
+// Checks that the nodes of a cluster see each other's file locks.
 #pragma once
 
 #include <filesystem>
@@ -12,8 +12,8 @@ namespace palpate {
 /// `mountinfo`: the text of /proc/self/mountinfo (proc_pid_mountinfo(5)).
 void check_shared_locks(const std::filesystem::path& folder, std::string_view mountinfo);
 
-/// The same with the mounts of this process. `folder` must exist. Checks nothing if /proc/self/mountinfo cannot be read
-/// or is longer than kMostSystemBytes.
+/// Performs this check with the mounts of this process. `folder` must exist. Does nothing if /proc/self/mountinfo
+/// cannot be read or is longer than kMostSystemBytes.
 void check_shared_locks(const std::filesystem::path& folder);
 
 }  // namespace palpate

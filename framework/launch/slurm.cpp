@@ -42,7 +42,7 @@ std::optional<int> setting(const std::string& text, const std::string& name) {
 std::string ask(const std::vector<std::string>& words, const std::string& hint = kNoClusterHint,
                 double patience = kAnswerSeconds) {
   Program program{words};
-  // Users set these variables to change the output or the duration of Slurm's commands.
+  // Removes variables by which users change the output or the duration of Slurm's commands.
   static const std::regex users("^(SQUEUE_|SBATCH_WAIT=)");
   const auto is_users = [](const std::string& one) { return std::regex_search(one, users); };
   auto& sees = program.environment;
@@ -106,7 +106,7 @@ Submission submit(const std::vector<std::string>& words) {
   const char* const hint = "no job of this array was submitted; 'sinfo' lists the partitions";
   const auto doubt = catch_error([&] { ask(all, hint); });
   all[1] = "--parsable";
-  // Without a time limit, because an interrupted command may or may not have submitted the array.
+  // No time limit: after an interruption it would be unknown whether the array was submitted.
   const std::string said = ask(all, hint, std::numeric_limits<double>::infinity());
   const std::optional<int> id = parse_array_id(said);
   if (!id) throw Error("sbatch", words_of(said), hint);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The interface to Slurm: calls of sbatch, squeue, scontrol and scancel, and the parsing of their output. A task is one
-// index of a job array. Jobs of a sweep are unknown here.
+// index of a job array. This file does not know the jobs of a sweep.
 #pragma once
 
 #include <optional>
@@ -27,7 +27,7 @@ std::optional<int> parse_array_id(const std::string& output);
 /// Returns the messages of a Slurm command as one line, without the name of the command.
 std::string words_of(const std::string& output);
 
-/// Throws Error if Slurm's commands are not installed. Asks no daemon.
+/// Throws Error if Slurm's commands are not installed. Does not contact the Slurm daemons.
 void check_installed();
 
 /// Asks the controller for the maximum number of tasks in an array. Throws Error if Slurm is not installed or does not
@@ -38,8 +38,9 @@ struct Submission {
   int array = 0;
   std::string doubt;  ///< message of sbatch if no node can run the array now; else ""
 };
-/// Submits an array: `sbatch` with `words`. Throws Error with the message of sbatch. An array that can never run, and
-/// an array that waits for drained nodes, look the same, so that both are submitted with a doubt.
+/// Submits an array: `sbatch` with `words`. Throws Error with the message of sbatch. sbatch does not distinguish an
+/// array that can never run from an array that waits for drained nodes. Both are submitted, and `doubt` contains its
+/// message.
 Submission submit(const std::vector<std::string>& words);
 
 /// Returns this user's tasks. Throws Error if squeue does not answer.

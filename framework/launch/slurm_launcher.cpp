@@ -31,7 +31,7 @@ namespace {
 constexpr const char* kScript = "task.sh";
 constexpr const char* kJobs = "jobs";
 constexpr std::chrono::minutes kMostSilence{10};
-constexpr std::chrono::seconds kPause{1};  ///< shortest time between two looks at the queue
+constexpr std::chrono::seconds kPause{1};  ///< shortest time between two queries of the queue
 constexpr std::chrono::seconds kMostPause{60};
 
 /// An option of sbatch that palpate sets, and the hint for users who set it.
@@ -67,8 +67,8 @@ class SlurmLauncher final : public Launcher {
     const auto each = static_cast<std::size_t>(order_.options.jobs_per_task);
     const std::size_t tasks = (jobs.size() + each - 1) / each;
     const auto begin_of = [&](std::size_t task) { return std::min(task * each, jobs.size()); };
-    // A line names the range from the first to the last job of a task. Jobs in between that the task must not run are
-    // done.
+    // A line names the range from the first to the last job of a task. Other jobs within this range are done, so the
+    // task skips them.
     std::string list;
     for (std::size_t task = 0; task < tasks; ++task)
       list += fmt::format("{}-{}\n", jobs[begin_of(task)], jobs[begin_of(task + 1) - 1]);
@@ -120,7 +120,7 @@ class SlurmLauncher final : public Launcher {
                   "rename it");
     make_inner_folder(all);
     std::error_code trouble;
-    // Another process may look for a number at the same time. The process that creates the folder gets the number.
+    // Another process may search for a number at the same time. The process that creates the folder gets the number.
     for (int number = 1; !trouble; ++number) {
       fs::path folder = all / std::to_string(number);
       if (fs::create_directory(folder, trouble)) return folder;
@@ -136,15 +136,15 @@ class SlurmLauncher final : public Launcher {
     if (!cluster.partition.empty()) words.push_back("--partition=" + cluster.partition);
     if (!cluster.time.empty()) words.push_back("--time=" + cluster.time);
     if (!cluster.account.empty()) words.push_back("--account=" + cluster.account);
-    // The user's words come before --array. An option without its value then takes --array as its value, and all tasks
-    // fail at once.
+    // The user's words come before --array. If a user forgets the value of an option, it takes --array as its value,
+    // and all tasks fail at once.
     words.insert(words.end(), cluster.words.begin(), cluster.words.end());
     words.push_back(fmt::format("--array=0-{}{}", count - 1, one_at_a_time ? "%1" : ""));
     words.push_back(fmt::format("--job-name={}", directory_.parent_path().filename().string()));
     // Slurm replaces %A and %a in a file name; %% is a percent sign.
     words.push_back(fmt::format("--output={}/%A_%a.log", boost::replace_all_copy(folder.string(), "%", "%%")));
     words.push_back(fmt::format("--cpus-per-task={}", order_.options.workers));
-    // The limit %1 holds within one array, so that each array waits for the end of the one before.
+    // The limit %1 holds within one array only, so each array waits for the end of the previous array.
     if (one_at_a_time && !arrays_.empty()) words.push_back(fmt::format("--dependency=afterany:{}", arrays_.back()));
     words.push_back((folder / kScript).string());
     words.push_back(std::to_string(first));
@@ -169,15 +169,15 @@ class SlurmLauncher final : public Launcher {
       throw Error("squeue", fmt::format("has not answered for ten minutes: {}", trouble->reason()),
                   "the jobs continue; follow them with 'palpate status'", Error::Kind::run);
     }
-    // With --retry-failed, a failed job keeps its old result until it begins, so that only the queue tells whether it
-    // has ended.
+    // With --retry-failed, a failed job keeps its old result until it starts, so only the queue shows whether it has
+    // ended.
     const auto ended = std::stable_partition(open_.begin(), open_.end(), [&](std::size_t job) {
       return trouble || (!queued_.empty() && (order_.options.resume.retry_failed ||
                                               !has_ended(job_directory(order_.sweep, order_.sweep.jobs[job]))));
     });
     returned.assign(ended, open_.end());
     open_.erase(ended, open_.end());
-    // A look at many jobs on a slow file system takes long. The pause leaves most of the time to others.
+    // Reading many jobs from a slow file system takes long. The pause leaves most of the time to other users.
     next_ = Clock::now() + std::clamp<Clock::duration>(10 * (Clock::now() - begun), kPause, kMostPause);
   }
 
@@ -185,9 +185,9 @@ class SlurmLauncher final : public Launcher {
   fs::path directory_ = absolute(order_.sweep.directory / "").lexically_normal().parent_path();
   std::vector<int> arrays_;
   std::vector<std::size_t> open_;          ///< jobs that have not been returned
-  std::set<int> queued_;                   ///< arrays with tasks in the queue at the last look
+  std::set<int> queued_;                   ///< arrays that had tasks in the queue at the last query
   int running_ = 0;                        ///< number of running tasks
-  Clock::time_point next_ = Clock::now();  ///< time of the next look
+  Clock::time_point next_ = Clock::now();  ///< time of the next query
   std::optional<Clock::time_point> silent_since_;
 };
 

@@ -33,8 +33,8 @@ Tree libraries() {
                     {"yaml-cpp", Tree::quote(PALPATE_YAML_CPP_VERSION)}});
 }
 
-/// Commit, and whether the tree differed from it. Kept beside the program, not in it: a commit that changes no code
-/// leaves the program's bytes alone.
+/// Returns the commit, and whether the source tree differed from it. A separate file stores both, so that a commit
+/// without changes of code does not change the program.
 Tree read_stamp(const Installation& installation) {
   const fs::path file = installation.plugins / "build.json";
   return is_there(file) ? read_json(file, Origin::user) : Tree::map();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What program this is, for manifests: enough to tell whether two runs were made by the same code.
+// Description of this program for manifests, which shows whether two runs were made by the same code.
 #pragma once
 
 #include "config/tree.hpp"
@@ -10,39 +10,41 @@
 
 namespace palpate {
 
-/// What belongs together, in a build tree or installed.
+/// Paths of one installation, or of one build tree.
 struct Installation {
-  std::filesystem::path program;  ///< what users call
-  std::filesystem::path whole;    ///< the program that has every command; installed, it is the one that users call
+  std::filesystem::path program;  ///< the program that users start
+  std::filesystem::path whole;    ///< the program with all commands; in an installation, the same as `program`
   std::filesystem::path plugins;
   std::filesystem::path configs;
 };
 
-/// That of this very program; throws Error as below.
+/// Returns the installation of the running program. Throws Error as the overload below does.
 Installation find_installation();
 
-/// That of a program, or of a library as Python's module is one: the nearest folder above `file` that has lib/palpate,
-/// which is a prefix (bin/palpate, lib/palpate/<kind>/<name>.so, share/palpate/configs) or build/<preset> of a source
-/// tree. `file` has no links in it. Throws Error if there is none.
+/// Returns the installation of `file`, a program or a library such as the Python module: the nearest folder above it
+/// that contains lib/palpate. The folder is a prefix (bin/palpate, lib/palpate/<kind>/<name>.so, share/palpate/configs)
+/// or build/<preset> of a source tree. `file` must not contain links. Throws Error if there is no such folder.
 Installation find_installation(const std::filesystem::path& file);
 
-/// Of this machine, "" if it has none.
+/// Returns the name of this machine; "" if it has none.
 std::string host_name();
 
 extern const char* const kVersion;
 
-/// A hash over all of core as it was compiled, and over what is linked into it: cmake/CoreHash.cmake makes it, for
-/// every program that core is linked to.
+/// Hash of the compiled core library and of the libraries linked into it. cmake/CoreHash.cmake computes it for each
+/// program that links core.
 extern const char* const kCoreHash;
 
-/// What `palpate --version` prints, without the last newline: version, commit, build and compiler, a line each.
+/// Returns the output of `palpate --version` without the last newline: version, commit, build and compiler, one per
+/// line.
 std::string build_text(const Installation& installation);
 
-/// One hash over core and the plugins of a run. Equal for equal code: neither a commit alone, nor another plugin, nor a
-/// command or a page that says something else changes it.
+/// Returns one hash of core and of the plugins of a run, which is equal for equal code. Other plugins, commands, pages,
+/// and commits without changes of code do not change it.
 std::string build_hash(const PluginHost& host, const PluginNames& plugins);
 
-/// Version, commit (of the last build; dirty or not), compiler, instruction path, library versions, plugins, host.
+/// Returns version, commit (of the last build; dirty or not), compiler, instruction path, library versions, plugins and
+/// host.
 Tree describe_build(const Installation& installation, const PluginHost& host, const PluginNames& plugins,
                     const std::string& instruction_path);
 

@@ -33,7 +33,7 @@ namespace {
 constexpr int kLevels = 3;
 constexpr const char* kLatest = "@latest";
 
-/// Damaged ones, too: what is wrong with them is for the command to say.
+/// Whether a folder is a record, even a damaged one; the command reports the damage.
 bool is_record(const fs::path& folder) {
   constexpr std::array<const char*, 3> kParts{"config.yaml", "manifest.jsonl", kSummaryFile};
   return std::any_of(kParts.begin(), kParts.end(), [&](const char* part) { return is_there(folder / part); }) ||
@@ -45,17 +45,17 @@ bool is_moved_aside(const fs::path& directory) {
   return begins_with_id(name) && name.compare(kIdLength, 5, ".old-") == 0;
 }
 
-/// Seconds and nanoseconds: runs of the same second have an order, too.
+/// Returns the start time in seconds and nanoseconds, so that runs started in the same second have an order.
 std::pair<std::time_t, long> begun(const fs::path& directory) {
   struct stat what {};
   const bool known = ::stat((directory / "config.yaml").c_str(), &what) == 0;
   return known ? std::pair(what.st_mtim.tv_sec, what.st_mtim.tv_nsec) : std::pair(std::time_t{0}, 0L);
 }
 
-/// Adds what is in `folder` and as many levels below; returns whether there was a record.
+/// Adds the records in `folder` and in `levels` levels below it; returns whether there was a record.
 bool collect_records(const fs::path& folder, int levels, Catalogue& out) {
   if (is_record(folder)) {
-    // Given by its own path it is meant all the same.
+    // A run that was moved aside still counts if its own path was given.
     const bool aside = levels < kLevels && is_moved_aside(folder);
     aside ? void(++out.moved_aside) : out.records.push_back(folder);
     return true;
@@ -67,7 +67,7 @@ bool collect_records(const fs::path& folder, int levels, Catalogue& out) {
     if (hidden || fs::symlink_status(one, none).type() != fs::file_type::directory) continue;
     any = collect_records(one, levels - 1, out) || any;
   }
-  // A folder that explains itself, as runs/reference of a clone does, surprises nobody.
+  // A folder with a README.md, such as runs/reference of a clone, is not reported.
   if (!any && levels == kLevels - 1 && !is_there(folder / "README.md")) ++out.strangers;
   return any;
 }
@@ -79,14 +79,15 @@ void add_values(const Tree& tree, const std::string& path, Row& out) {
   for (std::size_t i = 0; i < tree.items.size(); ++i) add_values(tree.items[i], behind + std::to_string(i), out);
 }
 
-/// The same of who only compares: of a damaged config nothing is known.
+/// Returns the settings for comparisons; none if the config is damaged.
 Row known_settings(const fs::path& directory) {
   Row out;
   catch_error([&] { out = read_settings(directory); });
   return out;
 }
 
-/// "a and 3 more, 'palpate list' shows them": of many the last ones, each with what sets it apart from those.
+/// Returns the Error for a name that several records have. It lists the last few with the settings that distinguish
+/// them, and the number of the others.
 Error several(const std::string& words, const std::string& base, std::vector<fs::path> records) {
   constexpr std::size_t kShown = 4;
   const std::size_t all = records.size();
@@ -108,7 +109,7 @@ Error several(const std::string& words, const std::string& base, std::vector<fs:
                fmt::format("give the directory of one, or {}{} for the latest", base, kLatest));
 }
 
-/// What could be meant by a name that nothing has.
+/// Returns the Error for an unknown name, with similar names as its hint.
 Error unknown(const std::string& words, const std::string& name, const fs::path& runs) {
   std::vector<std::string> known;
   for (const fs::path& one : list_folder(runs)) known.push_back(one.filename().string());
@@ -120,14 +121,14 @@ Error unknown(const std::string& words, const std::string& name, const fs::path&
                                : "run 'palpate list' to see all runs and sweeps");
 }
 
-/// The records that words mean.
+/// The records that the words of a user name.
 struct Meant {
   std::string base;  ///< the words, without @latest
   bool latest = false;
-  std::vector<fs::path> records;  ///< in the order in which they were begun; none of a path without one
+  std::vector<fs::path> records;  ///< in the order of their start; empty for a path without a record
 };
 
-/// Throws Error for a name that nothing has.
+/// Returns the records that `words` name. Throws Error for an unknown name.
 Meant find_meant(const std::string& words, Wanted wanted, const fs::path& runs) {
   Meant out;
   out.latest = !is_there(words) && boost::ends_with(words, kLatest);
@@ -140,7 +141,7 @@ Meant find_meant(const std::string& words, Wanted wanted, const fs::path& runs) 
   const bool is_slug = base.find('~') != std::string::npos && is_word && is_there(runs / base);
   const fs::path named = is_slug ? runs / base : runs / slug(base);
   records = read_catalogue(is_path ? fs::path(base) : named).records;
-  // A folder of sources may have the name of the runs that are made of them.
+  // A folder without records may have the same name as a run.
   if (is_path && is_word && records.empty()) records = read_catalogue(named).records;
   if (records.empty()) {
     if (is_path || !is_word) return out;
@@ -152,7 +153,7 @@ Meant find_meant(const std::string& words, Wanted wanted, const fs::path& runs) 
   return out;
 }
 
-/// The only one, or the last where that is wanted. Throws Error for several.
+/// Returns the only record, or the last one with @latest. Throws Error for several records.
 fs::path only_one(const std::string& words, const Meant& meant) {
   if (meant.records.empty()) return meant.base;
   if (meant.records.size() > 1 && !meant.latest) throw several(words, meant.base, meant.records);
@@ -162,7 +163,7 @@ fs::path only_one(const std::string& words, const Meant& meant) {
 }  // namespace
 
 std::vector<std::string> differing_keys(const std::vector<Row>& configs) {
-  // A config of a stranger may have 100,000 values: none is looked for one by one.
+  // A config from another user may have 100,000 values, so the values are looked up in hash maps.
   std::vector<std::unordered_map<std::string_view, const Scalar*>> values(configs.size());
   for (std::size_t i = 0; i < configs.size(); ++i) {
     for (const auto& [key, value] : configs[i].fields) values[i].emplace(key, &value);
@@ -171,7 +172,7 @@ std::vector<std::string> differing_keys(const std::vector<Row>& configs) {
   std::unordered_set<std::string_view> seen;
   for (const Row& config : configs) {
     for (const auto& [key, value] : config.fields) {
-      // The version of the record's form is no setting: a sweep's config has none.
+      // `complete`, the version of the format, is not a setting; configs of sweeps do not have it.
       if (key == "complete" || !seen.insert(key).second) continue;
       const auto same = [&, at = &key, there = &value](const auto& other) {
         const auto found = other.find(*at);
@@ -215,7 +216,7 @@ fs::path find_record(const std::string& words, Wanted wanted, const fs::path& ru
 std::vector<fs::path> find_records(const std::vector<std::string>& words, const fs::path& runs) {
   std::vector<fs::path> out;
   for (const std::string& one : words) {
-    // A pattern such as runs/NAME/* takes tables and pictures beside the records along.
+    // A pattern such as runs/NAME/* also matches tables and figures next to the records.
     std::error_code none;
     if (words.size() > 1 && one.find('/') != std::string::npos && fs::is_regular_file(one, none)) continue;
     const Meant meant = find_meant(one, Wanted::sweep, runs);

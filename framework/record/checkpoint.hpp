@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// When a recorded run is looked at: after so many taps, or as soon as it was good enough.
+// The state of a recorded run to evaluate: after a number of taps, or after the first tap that reached a goal.
 #pragma once
 
 #include "record/row.hpp"
@@ -11,31 +11,32 @@ namespace palpate {
 
 class Checkpoint {
  public:
-  /// At least 1.
+  /// Returns the checkpoint after `taps` taps, at least 1.
   static Checkpoint after(int taps);
 
-  /// After the first tap at which a field of the summary is as good as that, "rmse_m=8 mm": it must say which way is
-  /// better. Throws Error, of the command line, for another text.
+  /// Returns the checkpoint after the first tap at which a summary field reaches a goal, such as "rmse_m=8 mm". The
+  /// field must be one for which less or more is better. Throws Error, with the command line as its place, for any
+  /// other text.
   static Checkpoint once(const std::string& text);
 
-  /// None of a occasion that depends on what came of the taps.
+  /// Returns the number of taps; nullopt if the checkpoint depends on the results of the taps.
   std::optional<int> taps() const { return taps_; }
 
-  /// Whether it has come, `summary` being that after `taps` taps. An error that is not known, or not finite, is not
-  /// good enough.
+  /// Whether the checkpoint is reached; `summary` is the summary after `taps` taps. A field that is unknown or not
+  /// finite does not reach the goal.
   bool has_come(int taps, const Row& summary) const;
 
-  /// "after 17 taps", "once rmse_m was 8 mm or less".
+  /// Returns the description: "after 17 taps", "once rmse_m was 8 mm or less".
   const std::string& words() const { return words_; }
 
-  /// In names of files: "at_17", "until_rmse_m_0.008".
+  /// Returns the text for names of files: "at_17", "until_rmse_m_0.008".
   const std::string& key() const { return key_; }
 
  private:
   std::optional<int> taps_;
   std::string field_;
   double goal_ = 0.0;  ///< SI
-  bool less_ = true;   ///< is better
+  bool less_ = true;   ///< whether less is better
   std::string words_, key_;
 };
 

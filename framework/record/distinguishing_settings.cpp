@@ -16,17 +16,17 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t kMostShown = 3;
-/// Each setting is counted over all pairs of runs; a config may differ in 100,000 values.
+/// Limits the work: each setting is compared over all pairs of runs, and configs may differ in 100,000 values.
 constexpr std::size_t kMostCompared = 64;
 
-/// One setting over all runs.
+/// One setting and its values in all runs.
 struct Setting {
   std::string name;                ///< "scene", "kernel.length_scale"
   std::string block;               ///< first part of the name
   std::vector<std::string> words;  ///< value in each run; "" where the run has none
-  std::vector<std::size_t> codes;  ///< equal for equal values
+  std::vector<std::size_t> codes;  ///< code per run; runs with equal values have equal codes
   std::vector<std::size_t> equal;  ///< number of runs with this value, by code
-  int rank = 0;                    ///< among equally telling settings, the smallest comes first
+  int rank = 0;                    ///< on a tie the setting with the smallest rank comes first
 
   std::size_t distinguished(std::size_t run) const { return codes.size() - equal[codes[run]]; }
 };
@@ -45,7 +45,8 @@ Setting setting(const std::string& name, std::vector<std::string> words, int ran
   return out;
 }
 
-/// The groups of this kind by which a run differs from the others: those that not every run has, or else its own.
+/// Returns, for each run, its groups of this kind that some other run lacks; all its groups of this kind if there are
+/// none.
 std::vector<std::string> group_words(const std::vector<RecordedSettings>& runs, const std::string& kind) {
   std::map<std::string, std::size_t> counts;
   for (const RecordedSettings& run : runs) {
@@ -71,7 +72,7 @@ std::vector<Setting> differing_settings(const std::vector<RecordedSettings>& run
   for (const RecordedSettings& run : runs) configs.push_back(run.values);
   std::vector<std::string> keys = differing_keys(configs);
   keys.resize(std::min(keys.size(), kMostCompared));
-  // A key that only later runs have stands where its block does.
+  // Place a key that the first runs lack next to the other keys of its block.
   std::map<std::string, std::size_t> order;
   for (const Row& config : configs) {
     for (const auto& field : config.fields) order.emplace(block_of(field.first), order.size());
@@ -98,7 +99,7 @@ std::vector<Setting> differing_settings(const std::vector<RecordedSettings>& run
 std::vector<std::string> distinguishing(const std::vector<Setting>& settings, std::size_t run) {
   std::vector<std::string> out;
   std::set<std::string> blocks;
-  std::vector<std::size_t> rest;  // runs that are not set apart yet
+  std::vector<std::size_t> rest;  // runs that the chosen settings do not distinguish yet
   for (std::size_t other = 0; !settings.empty() && other < settings.front().codes.size(); ++other) {
     if (other != run) rest.push_back(other);
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Settings that set the runs of one name apart, for the table of `palpate list` and for names that several runs have.
+// Settings by which runs of the same name differ, for the table of `palpate list` and for errors about ambiguous names.
 #pragma once
 
 #include "record/row.hpp"
@@ -11,20 +11,19 @@
 
 namespace palpate {
 
-/// A recorded config as far as it can be compared with others.
+/// The part of a recorded config that can be compared with other configs.
 struct RecordedSettings {
-  Row values;  ///< every value by its dotted path
-  std::map<std::string, std::set<std::string>>
-      groups;  ///< files of configs/KIND/ that wrote any of the values, by KIND
+  Row values;                                           ///< every value by its dotted path
+  std::map<std::string, std::set<std::string>> groups;  ///< files of configs/KIND/ that set any of the values, by KIND
 };
 
-/// Returns the groups in the origins of a record, as recorded_origins() returns them.
+/// Returns the groups named in `origins`, which come from recorded_origins().
 std::map<std::string, std::set<std::string>> recorded_groups(const std::map<std::string, std::string>& origins);
 
-/// Returns, for each of these runs of one name, up to three settings such as "scene ring" or "taps 30", the most
-/// telling first: the one that sets this run apart from most others, then the one that does so from most of the rest,
-/// then one for each other block of the config that differs. Of equally telling settings the seed comes first, a group
-/// before its values. A setting that is equal in all runs, or is not written in this one, is never returned.
+/// Returns up to three settings such as "scene ring" or "taps 30" for each of these runs of one name. The first setting
+/// distinguishes the run from the most other runs, the second from the most of the remaining ones. Further settings
+/// come from other blocks of the config that differ. On a tie the seed comes first, and a group comes before its
+/// values. Settings that are equal in all runs, or missing in this run, are never returned.
 std::vector<std::vector<std::string>> distinguishing_settings(const std::vector<RecordedSettings>& runs);
 
 }  // namespace palpate

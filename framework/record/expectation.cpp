@@ -30,7 +30,7 @@ constexpr std::array kStatistics{
     StatisticName{"p90", Statistic::quantile, 0.9},  StatisticName{"p95", Statistic::quantile, 0.95},
 };
 
-/// One key with its value, once nested maps are undone.
+/// A key with its value; the keys of nested maps are joined by dots.
 struct Clause {
   std::string key;
   SourceLocation place;
@@ -42,7 +42,7 @@ std::string without_spaces(std::string text) {
   return text;
 }
 
-/// The key's place is the better one, unless the value came from elsewhere, laid over it.
+/// Returns the place of the key, or the place of the value if an override from another file set the value.
 SourceLocation place_of(const Tree::Entry& entry) {
   const SourceLocation& value = entry.value.place;
   return value.file && (!entry.place.file || *value.file != *entry.place.file) ? value : entry.place;
@@ -78,7 +78,7 @@ std::vector<std::string> field_names() {
   return names;
 }
 
-/// Splits the key into statistic and field, and refuses unknown ones.
+/// Splits the key into statistic and field. Throws Error for unknown names.
 const RecordField& read_key(const Clause& line, Expectation& out) {
   static const RecordField failed_runs = RecordField(kFailedRuns, "runs that failed").less();
   out.key = out.field = line.key;

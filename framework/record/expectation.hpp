@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// `expect:` of a config, read strictly: what the summary of a run, or the summaries of a sweep, must say for the
-// program to end with 0. What is expected does not change what a run computes, so it stays out of the id.
-// record/gate.hpp judges runs by it.
+// Reads `expect:` of a config: conditions on the summary of a run, or on the summaries of a sweep. The program exits
+// with 0 only if they hold. Expectations do not change the results of a run, so they are not part of its id.
+// record/gate.hpp checks them.
 #pragma once
 
 #include "config/relation.hpp"
@@ -14,34 +14,35 @@
 
 namespace palpate {
 
-/// The key that stands for the number of runs that failed; it is no field of the summary.
+/// The key of the number of failed runs, which is not a field of the summary.
 inline constexpr const char* kFailedRuns = "failed_runs";
 
-/// One line of `expect:`: a field of the summary, or a statistic of it over the runs, compared with a value.
+/// One line of `expect:`. It compares a field of the summary, or a statistic of this field over the runs, with a value.
 struct Expectation {
-  enum class Statistic { each, mean, quantile };  ///< `each`: every single run has to fulfil it
+  enum class Statistic { each, mean, quantile };  ///< `each`: every single run must fulfil the condition
 
   std::string key;  ///< as written: "found", "median(object_taps)"
   std::string field;
   Statistic statistic = Statistic::each;
-  double share = 0.5;                     ///< of a quantile: 0 for min, 0.5 for median, 1 for max
+  double share = 0.5;                     ///< share of the quantile: 0 for min, 0.5 for median, 1 for max
   Relation comparison = Relation::equal;  ///< never `unequal`
-  double bound = 0.0;                     ///< SI; of a flag 1 or 0
-  std::string text;                       ///< of a field that is text: what it has to be
-  std::string unit;                       ///< in which the bound was written, "" for none
+  double bound = 0.0;                     ///< SI; for a flag 1 or 0
+  std::string text;                       ///< required value of a text field
+  std::string unit;                       ///< unit in which the bound was written; "" for none
   std::string wanted;                     ///< ">= 12", as messages quote it
   std::string place;                      ///< "file:line:column" or "command line"
 };
 
-/// Reads the map behind `expect:` (null for none): KEY: COMPARISON, or a list of comparisons which must all hold. A key
-/// is `failed_runs`, a field of the summary, or STATISTIC(field). Nested maps are keys joined by dots. Throws Error
-/// with place, reason and the nearest known name for anything else.
+/// Reads the map `expect:` (may be null). Its entries are KEY: COMPARISON, or KEY: [COMPARISON, ...] if all must hold.
+/// A key is `failed_runs`, a field of the summary, or STATISTIC(field). The keys of nested maps are joined by dots.
+/// Throws Error with place, reason and the nearest known name for anything else.
 std::vector<Expectation> read_expectations(const Tree* expect);
 
-/// The same as a flat map of texts, which reads back as the same expectations, and where each was written.
+/// Returns the expectations as a flat map of texts, which read_expectations() reads as the same expectations. Adds the
+/// place of each to `notes`.
 Tree resolved_expect(const Tree& expect, ResolveNotes& notes);
 
-/// The names that a statistic may have: mean, median, min, max, p5, ...
+/// Returns the names of the statistics: mean, median, min, max, p5, ...
 std::vector<std::string> statistic_names();
 
 }  // namespace palpate

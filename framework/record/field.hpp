@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The field list of a record, as an options struct has one: each field is named once, with its unit, its meaning, which
-// way is better and when it has no value. Whoever writes the record, reads it, judges by it, compares it, draws it or
-// documents it takes the field from here.
+// The field list of a record, similar to the field list of an options struct. It defines each field once: name, unit,
+// meaning, better direction, and reason for a missing value. All code that writes, reads, judges, compares, draws or
+// documents the record uses this list.
 //
 //     FieldList<Summary> list;
 //     list.add("taps", "all taps, failed ones included", [](const Summary& s) { return s.result.taps; }).less();
@@ -20,27 +20,27 @@
 
 namespace palpate {
 
-/// What is said of one field of a record: everything but its value.
+/// Description of one field of a record, without its value.
 struct RecordField {
   enum class Type { number, flag, text };
   enum class Better { less, more, neither };
 
   RecordField(std::string key, std::string sentence) : name(std::move(key)), meaning(std::move(sentence)) {}
 
-  /// Its dimension; lengths are metres, times seconds, forces newtons.
+  /// Sets the dimension; lengths are in metres, times in seconds, forces in newtons.
   RecordField& in(Unit dimension) { return unit = dimension, *this; }
   RecordField& less() { return better = Better::less, *this; }
   RecordField& more() { return better = Better::more, *this; }
-  /// What it means that a run, or a tap, which ended well has no value.
+  /// Sets the reason why a successful run or tap can lack a value.
   RecordField& absent(std::string reason) { return when_null = std::move(reason), *this; }
-  /// It tells of clock, memory or machine: not the same when the same is run again.
+  /// Marks a measurement of time, memory or machine, which changes when the same run is repeated.
   RecordField& measured() { return of_machine = true, *this; }
-  /// Its name on pages and in tables for people.
+  /// Sets the name shown on pages and in tables.
   RecordField& called(std::string words) { return label = std::move(words), *this; }
-  /// Worth a first look where there is no room for all; in the order of the list.
+  /// Marks an important field, which is shown even where space is limited. Such fields keep the order of the list.
   RecordField& headline() { return first_look = true, *this; }
 
-  std::string name;     ///< dotted where nested: "compute.infer"; of a family "height_gp.*"
+  std::string name;     ///< dotted if nested: "compute.infer"; a family has a pattern: "height_gp.*"
   std::string meaning;  ///< a sentence without its full stop, in Markdown
   Type type = Type::number;
   Unit unit = Unit::none;
@@ -51,15 +51,15 @@ struct RecordField {
   bool first_look = false;
 };
 
-/// Reads the cells of one row. Errors name `where`, the file and the tap.
+/// Reads the cells of one row. Error messages begin with `where`, the file and the tap.
 class RowReader {
  public:
   RowReader(const Row& row, std::string where) : row_(row), where_(std::move(where)) {}
 
   const Row& row() const { return row_; }
-  /// Returns the number of a field, `absent` for null. Throws Error for something else.
+  /// Returns the number of a field, or `absent` for null. Throws Error for any other value.
   double number(const char* name, double absent) const;
-  /// Returns the index of a text among `names`. Throws Error for another text.
+  /// Returns the index of a field's text in `names`. Throws Error for any other text.
   std::size_t index(const char* name, const std::vector<const char*>& names) const;
   [[noreturn]] void refuse(const std::string& reason) const;
 
@@ -68,18 +68,18 @@ class RowReader {
   std::string where_;
 };
 
-/// The fields of the record that is made of a `Record`, in their order.
+/// The fields of a record that is written from an object of type `Record`, in their order.
 template <class Record>
 class FieldList {
  public:
-  /// One field; `get`, a function or a member, gives of a Record a number, truth value, text, or an optional of these,
-  /// null without one.
+  /// Adds a field. `get`, a function or a member of Record, returns a number, a truth value, a text, or an optional of
+  /// these; nullopt is written as null.
   template <class Get>
   RecordField& add(std::string name, std::string meaning, Get get) {
     return add_where([](const Record&) { return true; }, std::move(name), std::move(meaning), std::move(get));
   }
 
-  /// A field that only those records have of which `has` holds: others lack even its name.
+  /// Adds a field that a record contains only if `has` returns true; other records lack its name too.
   template <class Has, class Get>
   RecordField& add_where(Has has, std::string name, std::string meaning, Get get) {
     RecordField field(std::move(name), std::move(meaning));
@@ -89,22 +89,22 @@ class FieldList {
     });
   }
 
-  /// Fields that stand in a list of their own, because several records have them; `write` adds them to a row.
+  /// Adds fields that several kinds of records share; `write` adds their values to a row.
   void add_shared(const std::vector<RecordField>& fields, std::function<void(Row&, const Record&)> write) {
     for (const RecordField& one : fields) insert(one, false, [](Row&, const Record&) {});
     if (!fields.empty()) entries_.back().write = std::move(write);
   }
 
-  /// Fields whose names only a record knows, such as those of a kernel: `pattern` stands for them in documents,
-  /// `write` adds them.
+  /// Adds fields whose names depend on the record, such as those of a kernel. Documents show `pattern` for them, and
+  /// `write` adds them to a row.
   RecordField& add_family(std::string pattern, std::string meaning, std::function<void(Row&, const Record&)> write) {
     return insert(RecordField(std::move(pattern), std::move(meaning)), true, std::move(write));
   }
 
-  /// Has the latest field read what it writes.
+  /// Sets the function that reads the last added field back from a row.
   void read_by(std::function<void(Record&, const RowReader&)> read) { entries_.back().read = std::move(read); }
 
-  /// Returns the record of a row, as far as fields read what they write. Throws Error for a cell that is damaged.
+  /// Returns the record of a row, filled by the fields that have a `read` function. Throws Error for a damaged cell.
   Record read(const RowReader& row) const {
     Record out;
     for (const Entry& one : entries_) {
@@ -113,7 +113,7 @@ class FieldList {
     return out;
   }
 
-  /// A record as a row.
+  /// Returns a record as a row.
   Row row(const Record& record) const {
     Row out;
     out.fields.reserve(2 * entries_.size());
@@ -121,7 +121,7 @@ class FieldList {
     return out;
   }
 
-  /// All that has a name of its own; with `families`, what stands for the others, too.
+  /// Returns the fields with fixed names; with `families`, also the patterns of the families.
   std::vector<RecordField> fields(bool families = false) const {
     std::vector<RecordField> out;
     for (const Entry& one : entries_) {

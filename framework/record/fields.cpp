@@ -23,7 +23,7 @@ const char* const kNoTruth = "no truth is known";
 struct ErrorField {
   RecordField field;
   std::optional<double> Errors::*value;
-  bool any_side = false;  ///< only where the tool comes from any side
+  bool any_side = false;  ///< the field exists only in runs that tap from any side
 };
 
 const std::vector<ErrorField>& error_list() {
@@ -111,7 +111,7 @@ bool has(const BeliefState& state, const std::string& name) { return state.find(
 
 constexpr const char* kObject = "object";
 
-/// "5 object; 9 desk"
+/// Returns the text of the field `relabelled`, such as "5 object; 9 desk".
 std::string words(const std::vector<Relabelled>& relabelled) {
   std::string out;
   for (const Relabelled& one : relabelled)
@@ -119,7 +119,7 @@ std::string words(const std::vector<Relabelled>& relabelled) {
   return out;
 }
 
-/// The state of the models, in a tap and in a result alike.
+/// Adds the fields for the state of the models, which taps and results share.
 template <class Record>
 void list_models(FieldList<Record>& list) {
   const auto family = [&](const std::string& name, const char* meaning) {
@@ -166,7 +166,7 @@ std::optional<double> if_contact(const TapRecord& tap, double value) {
 const std::vector<const char*> kSources{"initial", "acquisition", "fallback", "caller"};
 const std::vector<const char*> kOutcomes{"contact", "no_contact", "unreachable", "timeout", "aborted", "unknown"};
 
-/// The line of the tool, and its result along it.
+/// Adds the fields for the line of the tool and for the result along this line.
 void list_line(FieldList<TapRecord>& list) {
   using Tap = TapRecord;
   const auto of_line = [&](const char* name, const char* meaning, auto get, Unit unit) {
@@ -218,7 +218,7 @@ void list_line(FieldList<TapRecord>& list) {
   list.read_by([](Tap& t, const RowReader& in) { t.result.distance = in.row().number("along"); });
 }
 
-/// What came of the tap.
+/// Adds the fields for the result of the tap.
 void list_result(FieldList<TapRecord>& list) {
   using Tap = TapRecord;
   list.add("outcome", "result of the tap: `contact`, `no_contact`, `unreachable`, `timeout`, `aborted` or `unknown`",
@@ -268,7 +268,7 @@ void list_result(FieldList<TapRecord>& list) {
   list.read_by([](Tap& t, const RowReader& in) { t.result.seconds = in.number("robot_seconds", 0.0); });
 }
 
-/// The choice, and the state of the models before the tap.
+/// Adds the fields for the choice of the tap and for the state of the models before it.
 void list_choice(FieldList<TapRecord>& list) {
   using Tap = TapRecord;
   const auto of_state = [&](const char* name, const char* meaning) -> RecordField& {
@@ -360,19 +360,19 @@ FieldList<TapRecord> make_tap_list() {
   return list;
 }
 
-/// The phases of a tap, in their order.
+/// Meanings of the phases of a tap, in the order of Phase.
 constexpr std::array<const char*, kPhases> kPhaseMeanings{"in the backend", "fitting hyperparameters",
                                                           "updating the models", "scoring and choosing",
                                                           "writing the record of the previous tap"};
 
 bool is_from_any_side(const Summary& summary) { return !summary.from_above; }
 
-/// Whether contacts are read again after later taps.
+/// Whether later taps can change the label of a contact.
 bool is_read_again(const Summary& summary) {
   return !belief_option(summary.config.options, "height.offset").empty() || is_from_any_side(summary);
 }
 
-/// How often a run took such a step.
+/// Returns a function that reads the diagnostics counter `kind` of a run.
 auto diagnostics(const std::string& kind) {
   return [kind](const Summary& s) {
     const auto found = s.state.diagnostics.find(kind);
@@ -380,14 +380,14 @@ auto diagnostics(const std::string& kind) {
   };
 }
 
-/// The number of a run's objects of which `holds` holds; none where no truth is known.
+/// Returns the number of objects for which `holds` is true; nullopt if the truth is not known.
 template <class Holds>
 std::optional<int> count_objects(const Summary& summary, Holds holds) {
   if (!summary.objects) return std::nullopt;
   return static_cast<int>(std::count_if(summary.objects->begin(), summary.objects->end(), holds));
 }
 
-/// What `sum_up` makes of a number of each object that has it; none where none has.
+/// Returns `sum_up` of a measure over all objects that have a value of it; nullopt if no object has one.
 template <class SumUp>
 std::optional<double> over_objects(const Summary& summary, std::optional<double> ObjectErrors::*value, SumUp sum_up) {
   std::vector<double> values;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The records of a run and their fields: a tap, the times of a tap, the summary. To add a field is to add a line to
-// fields.cpp: files, `expect:`, `--where`, `--metric`, `palpate pareto`, pages and the tables of runs/README.md have it
-// from there.
+// The records of a run (tap, times of a tap, summary) and their fields. To add a field, add it to the list in
+// fields.cpp. Files, `expect:`, `--where`, `--metric`, `palpate pareto`, pages and the tables of runs/README.md use
+// that list.
 #pragma once
 
 #include "experiment/tap_record.hpp"
@@ -19,7 +19,7 @@
 
 namespace palpate {
 
-/// What summary.json is made of. Times and memory are absent where nobody measured them.
+/// Content of summary.json. Times and memory are nullopt if they were not measured.
 struct Summary : RunResult {
   const ResolvedConfig& config;
   std::string failure;  ///< "" unless the run failed
@@ -28,17 +28,17 @@ struct Summary : RunResult {
   std::optional<std::int64_t> peak_rss_bytes;
 };
 
-/// The field with the RMSE that a run expects at its end.
+/// Name of the field with the RMSE that the final models of a run expect.
 inline constexpr const char* kExpectedError = "expected_rmse_m";
 
-/// Wall seconds of one tap by phase, as its line `timing` has them.
+/// Wall time of one tap in each phase, as in its line `timing`.
 struct TapTimes {
   int tap = 0;
   std::array<double, kPhases> seconds{};
-  std::optional<double> expected_rmse = std::nullopt;  ///< before the tap, metres; where it was shown
+  std::optional<double> expected_rmse = std::nullopt;  ///< before the tap, metres; only if a display showed it
 };
 
-/// One of the objects in the line `objects`.
+/// One object in the line `objects`.
 struct ObjectRow : ObjectResult {
   int object = 0;
   std::string type;
@@ -49,17 +49,18 @@ const FieldList<Summary>& summary_list();
 const FieldList<TapTimes>& timing_list();
 const FieldList<ObjectRow>& object_list();
 
-/// What became of each object, where the truth is known; none where it is not.
+/// Returns one row per object of the scene; no rows if the truth is not known.
 std::vector<Row> object_rows(const Summary& summary);
 
-/// The fields that every summary has, in their order; those of the models depend on the config.
+/// Returns the fields that every summary has, in their order. The fields of the models depend on the config and are
+/// left out.
 const std::vector<RecordField>& summary_fields();
 
-/// The field of the summary with that name, or null.
+/// Returns the field of the summary with this name; null if there is none.
 const RecordField* find_summary_field(const std::string& name);
 
-/// The dimension of a column of results.csv: of a field as listed, of any other by the end of its name, `_m` or
-/// `_seconds`.
+/// Returns the dimension of a column of results.csv. Fields of the summary have theirs in the list; other columns have
+/// it from the end of their name, `_m` or `_seconds`.
 Unit unit_of_column(const std::string& name);
 
 /// Whether a field of the summary depends on clock, memory or machine rather than on the config.
@@ -70,33 +71,34 @@ bool needs_truth(const std::string& name);
 
 // Taps as lines of record.jsonl and rows of taps.csv.
 
-/// Returns the row of a tap after it was made.
+/// Returns the row of a tap that was made.
 Row tap_row(const TapRecord& tap);
 /// Returns the row of a tap before it is made: its first field is `intent`, and its result is null or left out.
 Row intent_row(const TapRecord& tap);
-/// Returns an intent as a tap whose result is unknown.
+/// Returns the row of a tap with an unknown result, made from the row of its intent.
 Row unknown_result_of(const Row& intent);
-/// Returns the taps of recorded rows, as far as a resumed run needs them: their state and errors stay in the rows.
-/// Throws Error, naming `file` and the tap, for a damaged row.
+/// Returns the taps of recorded rows with the data that a resumed run needs, without state and errors. Throws Error,
+/// naming `file` and the tap, for a damaged row.
 std::vector<TapRecord> read_taps(const std::vector<Row>& rows, const std::filesystem::path& file);
-/// Returns whether the contact of a row is on an object as `counts` reads it; nullopt without a contact.
+/// Returns whether the contact of a row is on an object according to the labels in `counts`; nullopt without a contact.
 std::optional<bool> label_now(const Row& row, const RunResult& counts);
 
 const char* outcome_name(Outcome outcome);
 const char* source_name(Source source);
 
-/// How far a surface is from the truth, best known first: the fields that a tap and a summary share.
+/// Returns the fields for the error of the surface, the best-known measure first. Taps and summaries share these
+/// fields.
 const std::vector<RecordField>& error_fields();
 
-/// Returns the contacts whose label at the end is another than the record of their tap has, by the field `relabelled`
-/// of a summary.
+/// Returns the contacts whose final label differs from the label recorded at their tap, from the field `relabelled` of
+/// a summary.
 std::vector<Relabelled> relabelled_in(const Row& summary);
 
-/// Returns the name of the root mean square error of whole reconstructions: `rmse_m`, or where summaries have only
-/// that, `rms_surface_distance_m`, the error from any side.
+/// Returns the field with the root mean square error of whole reconstructions: `rmse_m`, or `rms_surface_distance_m` if
+/// the summaries have only the latter (taps from any side).
 std::string main_error(const std::vector<Row>& summaries);
 
-/// Adds the errors to a row, null where no truth is known; and finds them in one.
+/// Adds the errors to a row, null where the truth is not known. errors_in() reads them back.
 void add_errors(Row& row, const Errors& errors);
 Errors errors_in(const Row& row);
 

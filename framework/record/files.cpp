@@ -29,13 +29,14 @@ Error failed(const fs::path& file, const char* action) {
 
 [[noreturn]] void fail(const fs::path& file, const char* action) { throw failed(file, action); }
 
-/// Opens above the standard files, which a process may have been started without.
+/// Opens a file with a descriptor above those of the standard streams, because a process may be started without the
+/// streams.
 Descriptor open_file(const fs::path& file, int flags) {
-  // Nobody waits for the other end of a pipe that lies in the place of a file.
+  // O_NONBLOCK: if the path is a pipe, do not wait for the process at its other end.
   return above_standard(::open(file.c_str(), flags | O_CLOEXEC | O_NONBLOCK | O_NOCTTY, 0666));
 }
 
-/// Opens what is to be written, but no link: whoever made that would choose what is overwritten.
+/// Opens a file for writing; fails for a link, whose author could otherwise choose the file that is overwritten.
 Descriptor open_to_write(const fs::path& file, int flags) {
   Descriptor opened = open_file(file, flags | O_NOFOLLOW);
   if (opened) return opened;
@@ -43,14 +44,14 @@ Descriptor open_to_write(const fs::path& file, int flags) {
   fail(file, "cannot be opened");
 }
 
-/// A lock of the open file and not of the process: another one of the same process is refused, too, and a lock can be
-/// asked after without taking it.
+/// The lock belongs to the open file, not to the process: a second lock in the same process fails too. A process can
+/// test for a lock without taking it.
 const struct flock kWholeFile { F_WRLCK, SEEK_SET, 0, 0, 0 };
 
 Descriptor open_lock(const fs::path& file) { return open_to_write(file, O_RDWR | O_CREAT | O_APPEND); }
 
-/// Closes a second descriptor of the same open file: Linux hands all that was written to the file system at each close,
-/// and the first descriptor keeps its lock.
+/// Duplicates the descriptor and closes the copy. Linux passes all written data to the file system at each close, and
+/// the original descriptor keeps its lock.
 bool flush_file(const Descriptor& file) {
   const int copy = ::fcntl(file.number(), F_DUPFD_CLOEXEC, STDERR_FILENO + 1);
   return copy >= 0 && ::close(copy) == 0;
@@ -58,8 +59,8 @@ bool flush_file(const Descriptor& file) {
 
 void sync_folder(const fs::path& folder) {
   const Descriptor opened = open_file(folder, O_RDONLY | O_DIRECTORY);
-  if (!opened && errno == EACCES) return;  // of another user, and so not made here
-  // A file system that cannot sync folders, or on which none is made.
+  if (!opened && errno == EACCES) return;  // belongs to another user, so this process did not make it
+  // Errors of file systems that cannot sync folders (EINVAL) or are read-only (EROFS).
   const auto needs_none = [] { return errno == EINVAL || errno == EROFS; };
   if (!opened || (::fsync(opened.number()) != 0 && !needs_none())) fail(folder, "cannot be synced");
 }
@@ -68,7 +69,7 @@ fs::path folder_of(const fs::path& file) { return file.has_parent_path() ? file.
 
 constexpr std::string_view kTemporary = ".tmp";
 constexpr std::size_t kDigits = 16;
-constexpr int kTrials = 100;  ///< of random names; a second one is needed as good as never
+constexpr int kTrials = 100;  ///< random names to try; the first one is almost always free
 
 bool is_temporary(const std::string& name) {
   const std::size_t end = name.size() - std::min(name.size(), kTemporary.size());
@@ -76,7 +77,7 @@ bool is_temporary(const std::string& name) {
   return name[end - kDigits - 1] == '.' && name.find_first_not_of("0123456789abcdef", end - kDigits) == end;
 }
 
-/// Before this process first writes in a folder.
+/// Removes the temporary files in `folder` the first time that this process writes there.
 void remove_temporaries_once(const fs::path& folder) {
   static std::mutex mutex;
   static std::set<std::string> seen;
@@ -87,7 +88,7 @@ void remove_temporaries_once(const fs::path& folder) {
   remove_temporaries(folder);
 }
 
-/// Whether a look at a path has shown that nothing is there, or nothing for this user.
+/// Whether this errno means that the path does not exist or that this user may not access it.
 bool shows_nothing(int reason) {
   return reason == ENOENT || reason == ENOTDIR || reason == EACCES || reason == ELOOP || reason == ENAMETOOLONG;
 }
@@ -96,14 +97,14 @@ std::optional<std::string> text_in(Reading reading, const fs::path& file, std::u
   if (reading) return std::move(reading.text);
   const int reason = reading.reason.value();
   if (reading.kind == Reading::Kind::absent && reason == ENOENT) return std::nullopt;
-  // Too few descriptors or too little memory tell nothing of the file, either.
+  // Too few descriptors or too little memory do not mean that the file is missing.
   const bool fails = reason != 0 && !shows_nothing(reason);
   if (reason != 0 && !fails && !is_there(file)) return std::nullopt;
   const auto [words, remedy] = words_of(reading, most_bytes);
   throw Error(file.string(), words, remedy, fails ? Error::Kind::run : Error::Kind::usage);
 }
 
-/// Where the last line of `text` ends.
+/// Returns the position of the last line end in `text`.
 std::size_t last_line_end(std::string_view text) {
   const void* const found = ::memrchr(text.data(), '\n', text.size());
   return found == nullptr ? std::string_view::npos : static_cast<const char*>(found) - text.data();
@@ -122,7 +123,8 @@ TemporaryFile::TemporaryFile(const fs::path& file) : file_(file) {
     if (!descriptor_ && errno == EEXIST) continue;
     if (!descriptor_) fail(file, "cannot be made");
     path_ = path;
-    // Whoever removes temporary files may have come between. A file system without locks has nobody who removes them.
+    // Another process may have removed the temporary file before it was locked. Without file locks no process removes
+    // it.
     const bool taken = ::fcntl(descriptor_.number(), F_OFD_SETLK, &kWholeFile) != 0 && errno == EAGAIN;
     struct stat what {};
     if (!taken && ::fstat(descriptor_.number(), &what) != 0) fail(file, "cannot be made");
@@ -146,7 +148,8 @@ void TemporaryFile::publish(bool sync) {
   if (!flush_file(descriptor_)) fail(file_, "cannot be written");
   if (::rename(path_.c_str(), file_.c_str()) != 0) {
     const int reason = errno;
-    // NFS asks again where an answer was lost, and is then told that the old name is gone.
+    // If the reply of an NFS server is lost, the client repeats the request, which then fails because the old name is
+    // gone.
     struct stat own {
     }, named{};
     const bool renamed = reason == ENOENT && ::fstat(descriptor_.number(), &own) == 0 &&
@@ -217,7 +220,7 @@ std::optional<std::string> read_if_there(const fs::path& file, std::uintmax_t mo
 }
 
 std::optional<std::string> first_line_if_there(const fs::path& file) {
-  // Holds the manifest of nearly every record.
+  // 16 KiB hold the manifest of nearly every record.
   for (std::uintmax_t bytes = 16384;; bytes *= 16) {
     auto begin = text_in(read_begin_bounded(file, bytes, Origin::record), file, kMostLogBytes);
     if (!begin) return std::nullopt;
@@ -228,7 +231,7 @@ std::optional<std::string> first_line_if_there(const fs::path& file) {
 }
 
 std::optional<LastLine> last_line_if_there(const fs::path& file) {
-  // Holds the last line of nearly every record.
+  // 4 KiB hold the last line of nearly every record.
   for (std::uintmax_t bytes = 4096;; bytes *= 16) {
     Reading reading = read_end_bounded(file, bytes, Origin::record);
     const std::uintmax_t skipped = reading.begin;
@@ -296,7 +299,7 @@ FileLock FileLock::wait_for(const fs::path& file) { return FileLock(file, F_OFD_
 
 FileLock& FileLock::operator=(FileLock&& other) noexcept {
   file_.swap(other.file_);
-  descriptor_ = std::move(other.descriptor_);  // which swaps
+  descriptor_ = std::move(other.descriptor_);  // this assignment swaps
   folder_ = std::move(other.folder_);
   std::swap(owner_, other.owner_);
   return *this;
@@ -343,7 +346,7 @@ AppendFile FileLock::append_file() const {
 }
 
 bool FileLock::is_held(const fs::path& file) {
-  // Nobody locks what is no file, and to open a device may already do something.
+  // Only regular files are locked, and opening a device may have side effects.
   struct stat what {};
   if (::lstat(file.c_str(), &what) != 0 && !shows_nothing(errno)) fail(file, "cannot be accessed");
   if (!S_ISREG(what.st_mode)) return false;
@@ -351,7 +354,7 @@ bool FileLock::is_held(const fs::path& file) {
   if (!in && shows_nothing(errno)) return false;
   struct flock other = kWholeFile;
   if (in && ::fcntl(in.number(), F_OFD_GETLK, &other) == 0) return other.l_type != F_UNLCK;
-  // On a file system without locks nobody holds one.
+  // Without locks in the file system, no process holds one.
   const bool keeps_none = in && (errno == ENOLCK || errno == ENOSYS || errno == EINVAL || errno == EOPNOTSUPP);
   if (!keeps_none) fail(file, "cannot be accessed");
   return false;

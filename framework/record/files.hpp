@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Files that survive kills: written whole under another name and renamed, or appended line by line; and locks that
-// end with their process. The folders may come from somebody else: none follows a link that lies in the place of what
-// it writes.
+// Writes files that stay intact if the process is killed: write_file() renames a complete temporary file, and
+// AppendFile appends line by line. Also locks files; a lock ends with its process. Another user may have made the
+// folders, so no function follows a link in the place of a file that it writes.
 #pragma once
 
 #include "children/child_process.hpp"
@@ -19,13 +19,14 @@
 
 namespace palpate {
 
-/// Writes `text` to a temporary file, closes that and renames it to `file`: readers see the old content or the new,
-/// never a part, and a link is replaced. With `sync` content and name are on the disk when it returns. Throws Error:
-/// then `file` is as it was, unless only the sync of its folder failed.
+/// Writes `text` to a temporary file, closes it and renames it to `file`. Readers see the old or the new content, never
+/// a part; a link is replaced. With `sync` content and name are on the disk on return. Throws Error; `file` is then
+/// unchanged, unless only the sync of its folder failed.
 void write_file(const std::filesystem::path& file, const std::string& text, bool sync = false);
 
-/// A file on its way to its name: made empty beside it, as NAME.<16 random hex digits>.tmp, and locked until it has its
-/// name. Removed where it does not get there, and after a kill by whoever next writes in that folder.
+/// A locked temporary file that publish() renames to its final name `file`. It is created empty next to `file`, as
+/// NAME.<16 random hex digits>.tmp. The destructor deletes it if it was not published. After a kill, the next process
+/// that writes in the folder deletes it.
 class TemporaryFile {
  public:
   /// Throws Error.
@@ -34,7 +35,7 @@ class TemporaryFile {
 
   const std::filesystem::path& path() const { return path_; }
   void write(std::string_view text) const;
-  /// Takes the place of `file`, once the file system has taken all that was written. Throws Error.
+  /// Flushes all that was written, then renames the temporary file to `file`. Throws Error.
   void publish(bool sync = false);
 
  private:
@@ -43,65 +44,67 @@ class TemporaryFile {
   Descriptor descriptor_;
 };
 
-/// Removes the temporary files in `folder` whose writers were killed: those that nobody holds locked.
+/// Removes the temporary files in `folder` that no process holds locked: their writers were killed.
 void remove_temporaries(const std::filesystem::path& folder);
 
-/// Puts the names in `folder` on the disk, and the names of the folders on the way to it. Throws Error.
+/// Syncs the names in `folder`, and in each folder above it, to the disk. Throws Error.
 void sync_names(const std::filesystem::path& folder);
 
-/// Whether there is something of that name. What this user may not look at is not there. Throws Error where the file
-/// system fails.
+/// Whether `path` exists and this user may access it. Throws Error if the file system fails.
 bool is_there(const std::filesystem::path& path);
-/// The same, and how many bytes it has; none where nothing is there.
+/// Returns the size of `path` in bytes; nullopt if is_there() is false.
 std::optional<std::uintmax_t> size_if_there(const char* path);
 
-/// Throws Error where `path`, a part of a record, is a link: what is written would lie where another person chose.
+/// Throws Error if `path`, a part of a record, is a link: another user could have chosen its target.
 void refuse_link(const std::filesystem::path& path);
 
-/// Makes `folder` if need be, and returns it. Throws Error.
+/// Makes `folder` if it does not exist, and returns it. Throws Error.
 std::filesystem::path make_folder(const std::filesystem::path& folder);
 
-/// The same for a part of a record. Throws Error, where it is a link, too.
+/// Makes `folder`, a part of a record, like make_folder(). Throws Error, for example if `folder` is a link.
 std::filesystem::path make_inner_folder(const std::filesystem::path& folder);
 
-/// Returns the whole content of a part of a record. Throws Error for what read_bounded() does not read; of kind `run`
-/// where the file system fails.
+/// Returns the content of a file of a record. Throws Error if read_bounded() cannot read it; the Error has kind `run`
+/// if the file system fails.
 std::string read_file(const std::filesystem::path& file, std::uintmax_t most_bytes = kMostLogBytes);
 
-/// The same; none where is_there() says that there is none. Files of the user and of the installation may be links.
+/// Returns the content of a file; nullopt if is_there() is false. Files of the user and of the installation may be
+/// links.
 std::optional<std::string> read_if_there(const std::filesystem::path& file, std::uintmax_t most_bytes = kMostLogBytes,
                                          Origin origin = Origin::record);
 
-/// Reads the first line of a part of a record that grows by lines, without its line end and without what is behind it;
-/// none where there is no file or no whole line. Throws Error as read_if_there().
+/// Returns the first line of a file that grows by lines, without its line end, and reads only the beginning of the
+/// file. Returns nullopt without a file or a complete line. Throws Error as read_if_there() does.
 std::optional<std::string> first_line_if_there(const std::filesystem::path& file);
 
-/// The last whole line of a part of a record that grows by lines.
+/// The last complete line of a file that grows by lines.
 struct LastLine {
-  std::uintmax_t bytes = 0;  ///< of the file
-  std::uintmax_t whole = 0;  ///< of its whole lines: what lies behind them a kill or a full disk cut off
-  std::string text;          ///< of the last one, without its line end; "" where there is none
+  std::uintmax_t bytes = 0;  ///< size of the file
+  std::uintmax_t whole =
+      0;             ///< size of its complete lines; bytes after them are a line that a kill or a full disk cut off
+  std::string text;  ///< the last complete line, without its line end; "" if there is none
 };
 
-/// Reads it without what is before it; none where there is no file. Throws Error as read_if_there().
+/// Returns the last complete line and reads only the end of the file. Returns nullopt without a file. Throws Error as
+/// read_if_there() does.
 std::optional<LastLine> last_line_if_there(const std::filesystem::path& file);
 
-/// A file that only grows, by whole lines.
+/// A file that only grows, by complete lines.
 class AppendFile {
  public:
   AppendFile() = default;
-  /// Opens or makes `file`. Throws Error.
+  /// Opens `file`, or makes it if it does not exist. Throws Error.
   explicit AppendFile(const std::filesystem::path& file);
 
-  /// Appends in one system call; with `sync` it is on the disk when it returns. Throws Error: what was not written
-  /// whole is cut off again. Where that fails, and after a sync or a flush that failed, each further call throws the
-  /// same Error: the kernel has dropped the data, and a second sync would report success.
+  /// Appends `text` with one system call; with `sync` the text is on the disk on return. Throws Error, and deletes a
+  /// text that was written only in part. If that deletion, a sync or a flush fails, each further call throws the same
+  /// Error: the kernel has dropped the data, and a second sync would report success.
   void append(const std::string& text, bool sync);
 
-  /// Keeps the first `bytes`. Throws Error.
+  /// Truncates the file to its first `bytes`. Throws Error.
   void cut(std::uintmax_t bytes) const;
 
-  /// Has the file system take all that was appended, as closing does: NFS reports a full quota only then. Throws Error.
+  /// Passes all appended data to the file system, as close() does; NFS reports a full quota only then. Throws Error.
   void flush();
 
  private:
@@ -110,38 +113,38 @@ class AppendFile {
 
   std::filesystem::path file_;
   Descriptor descriptor_;
-  std::optional<Error> failure_;  ///< after which nothing is appended
+  std::optional<Error> failure_;  ///< error of an earlier call; later calls of append() throw it again
 };
 
-/// A lock of the kernel on a file: it ends with the process, however that ends, and with the children that were forked
-/// from it meanwhile; programs that they start do not inherit it. It holds between machines where their file system
-/// keeps locks (NFS does, Lustre when it is mounted with `flock`).
+/// A lock of the kernel on a file. The lock ends when the process has ended, normally or by a kill, and so have all
+/// children that were forked while it held the lock. Programs that these processes start do not inherit the lock. The
+/// lock also works between machines if their file system has locks (NFS; Lustre mounted with `flock`).
 class FileLock {
  public:
   FileLock() = default;
-  /// Makes `file` if need be and locks it. Throws Error of kind `busy` if another process holds it.
+  /// Makes `file` if it does not exist, and locks it. Throws Error of kind `busy` if another process holds it.
   explicit FileLock(const std::filesystem::path& file);
   FileLock(FileLock&& other) noexcept { *this = std::move(other); }
   FileLock& operator=(FileLock&& other) noexcept;
-  /// Unlocks, unless in a forked child: until the process that took the lock lets go, it stays locked.
+  /// Releases the lock; in a forked child the file stays locked until the process that took the lock releases it.
   ~FileLock();
 
-  /// Throws Error where another process may hold the lock by now: in a forked child, and where the name in the folder,
-  /// wherever that was moved, does not lead to the locked file any more.
+  /// Throws Error if another process may hold the lock now: in a forked child, or if the folder no longer has the
+  /// locked file under its name. The folder itself may have been moved.
   void check() const;
 
-  /// The same, and where the path by which it was locked does not lead there: what is written by path would lie
-  /// elsewhere.
+  /// Throws Error as check() does. Also throws if the path given to the constructor no longer leads to the locked file,
+  /// because writing by path would then change other files.
   void check_in_place() const;
 
-  /// The locked file, to append to: an open file of its own would not be kept from another's by the lock.
+  /// Returns the locked file for appending. A file opened separately would not be protected by the lock.
   AppendFile append_file() const;
 
-  /// Makes `file` if need be and waits until it can be locked. Throws Error.
+  /// Makes `file` if it does not exist, and waits until it can lock the file. Throws Error.
   static FileLock wait_for(const std::filesystem::path& file);
 
-  /// Whether some process holds the lock of `file` now. Asking disturbs nobody who is about to take it. Throws Error
-  /// where the file system fails.
+  /// Whether some process holds the lock of `file` now. This check does not disturb a process that is about to take the
+  /// lock. Throws Error if the file system fails.
   static bool is_held(const std::filesystem::path& file);
 
  private:
@@ -150,10 +153,11 @@ class FileLock {
   std::filesystem::path file_;
   Descriptor descriptor_;
   Descriptor folder_;
-  int owner_ = 0;  ///< process id
+  int owner_ = 0;  ///< id of the process that took the lock
 };
 
-/// Throws Error if the file system of `folder`, which exists, keeps no locks: two processes would do the same work.
+/// Throws Error if the file system of the existing folder `folder` has no locks: two processes could then do the same
+/// work.
 void check_locks(const std::filesystem::path& folder);
 
 }  // namespace palpate

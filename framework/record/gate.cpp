@@ -26,12 +26,13 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 bool wants_more(Relation relation) { return relation == Relation::at_least || relation == Relation::above; }
 
-/// Number or flag at `field` of the summary; none when it is null, absent or not finite.
+/// Returns the number or flag `field` of the summary; nullopt if it is null, missing or not finite, or if the run
+/// failed.
 std::optional<double> number_at(const RunOutcome& run, const std::string& field) {
   return run.summary && run.failure.empty() ? run.summary->number(field) : std::nullopt;
 }
 
-/// The value in the unit of the bound, with as many digits as it takes to tell the two apart.
+/// Returns the value in the unit of the bound, with enough digits to distinguish value and bound.
 std::string shown(const Expectation& one, double value) {
   const RecordField* field = find_summary_field(one.field);
   if (field != nullptr && field->type == RecordField::Type::flag && one.statistic == Statistic::each)
@@ -47,7 +48,7 @@ std::string shown(const Expectation& one, double value) {
   return significant(value / scale, digits) + unit;
 }
 
-/// Why a run has no value.
+/// Returns the reason why a run has no value.
 std::string absence(const Expectation& one, const RunOutcome& run) {
   if (!run.failure.empty()) return "the run failed";
   const Scalar* value = run.summary ? run.summary->find(one.field) : nullptr;
@@ -57,7 +58,7 @@ std::string absence(const Expectation& one, const RunOutcome& run) {
   return reason.empty() ? fmt::format("the summary has no {}", one.field) : reason;
 }
 
-/// One run by a field of its summary.
+/// Judges one run by a field of its summary.
 Verdict judge_run(const Expectation& one, const RunOutcome& run) {
   const RecordField* field = find_summary_field(one.field);
   if (field != nullptr && field->type == RecordField::Type::text) {
@@ -70,7 +71,8 @@ Verdict judge_run(const Expectation& one, const RunOutcome& run) {
   return {one, satisfies(value, one.comparison, one.bound), shown(one, *value)};
 }
 
-/// Every run on its own: names the first that misses, and how many do.
+/// Judges each run separately. The verdict names the first run that misses the expectation, and the number of such
+/// runs.
 Verdict judge_each(const Expectation& one, const std::vector<RunOutcome>& runs) {
   int missed = 0;
   std::string got;
@@ -86,20 +88,21 @@ Verdict judge_each(const Expectation& one, const std::vector<RunOutcome>& runs) 
 
 double statistic_of(const Expectation& one, const std::vector<double>& sorted) {
   if (one.statistic == Statistic::quantile) return quantile(sorted, one.share);
-  // The mean of infinite values is infinite; mean_of() takes finite ones.
+  // With infinite values the mean is infinite; mean_of() requires finite ones.
   if (!std::isfinite(sorted.front())) return sorted.front();
   if (!std::isfinite(sorted.back())) return sorted.back();
   return mean_of(sorted);
 }
 
-/// " over 20 seeds" where several are known.
+/// Returns a text such as " over 20 seeds"; "" if all runs have the same seed.
 std::string seeds_words(const std::vector<RunOutcome>& runs) {
   std::set<std::optional<std::string>> seeds;
   for (const RunOutcome& run : runs) seeds.insert(run.seed);
   return seeds.size() > 1 ? fmt::format(" over {} seeds", seeds.size()) : std::string();
 }
 
-/// A statistic over all runs, those without a value at the worst end. An equality has to hold at either.
+/// Judges a statistic over all runs. A run without a value counts as the worst possible value; for `==` the statistic
+/// must hold with -infinity and with +infinity.
 Verdict judge_statistic(const Expectation& one, const std::vector<RunOutcome>& runs) {
   std::vector<double> values;
   std::vector<const RunOutcome*> without;
@@ -137,11 +140,11 @@ Verdict judge_count(const Expectation& one, const std::vector<RunOutcome>& runs)
           fmt::format("{}{}", failed, runs.size() == 1 ? std::string() : fmt::format(" of {}", runs.size()))};
 }
 
-/// What stands for a character; blanks but the space, as they are, would be read as spaces.
+/// XML entities. Tabs and line ends need entities, because parsers of XML read them as spaces in attributes.
 constexpr std::array<std::pair<char, std::string_view>, 7> kEntities{
     {{'&', "&amp;"}, {'<', "&lt;"}, {'>', "&gt;"}, {'"', "&quot;"}, {'\t', "&#9;"}, {'\n', "&#10;"}, {'\r', "&#13;"}}};
 
-/// Text inside the quotes of an attribute.
+/// Returns text for the quotes of an XML attribute.
 std::string xml_text(const std::string& text) {
   std::string out;
   for (std::string_view rest = text; !rest.empty();) {
@@ -149,7 +152,7 @@ std::string xml_text(const std::string& text) {
         std::find_if(kEntities.begin(), kEntities.end(), [&](const auto& one) { return one.first == rest.front(); });
     const std::size_t length = utf8_length(rest);
     const std::string_view sequence = rest.substr(0, std::max<std::size_t>(length, 1));
-    // U+FFFE and U+FFFF are valid UTF-8, but no characters of XML.
+    // U+FFFE and U+FFFF are valid UTF-8, but XML does not allow them.
     const bool is_none = length == 0 || static_cast<unsigned char>(rest.front()) < 0x20 || sequence == "\xef\xbf\xbe" ||
                          sequence == "\xef\xbf\xbf";
     out += entity != kEntities.end() ? entity->second : is_none ? "\xef\xbf\xbd" : sequence;
@@ -178,7 +181,7 @@ std::string verdict_line(const Verdict& verdict) {
 std::vector<TestCase> test_cases(const std::string& suite, const std::vector<RunOutcome>& runs,
                                  const std::vector<Verdict>& verdicts) {
   std::vector<TestCase> cases;
-  // Where failures are counted and few enough, none of them fails the whole.
+  // If `failed_runs` is fulfilled, failed runs do not fail the suite.
   const bool tolerated = std::any_of(verdicts.begin(), verdicts.end(), [](const Verdict& one) {
     return one.expectation.field == kFailedRuns && one.holds;
   });

@@ -17,14 +17,15 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Far beyond what is ever written, and little enough to be held in memory.
-constexpr std::size_t kMostValues = 1'000'000;  ///< of a tree
+// These limits are far above the size of files that palpate writes, and small enough for the memory.
+constexpr std::size_t kMostValues = 1'000'000;  ///< values of a tree
 constexpr std::size_t kMostLevels = 100;
 constexpr std::size_t kMostRowValues = 4096;
-constexpr std::size_t kMostListedValues = 100'000;  ///< of a row, with those of its lists
-constexpr std::size_t kMostNameBytes = 1024;  ///< of a name in a row, which repeats those of all that is around it
+constexpr std::size_t kMostListedValues = 100'000;  ///< values of a row, including those in its lists
+constexpr std::size_t kMostNameBytes =
+    1024;  ///< bytes of a joined name, which contains the names of all enclosing objects
 constexpr std::size_t kMostLines = 1'100'000;
-constexpr std::size_t kMostLineValues = 20'000'000;  ///< of all lines of a file
+constexpr std::size_t kMostLineValues = 20'000'000;  ///< values of all lines of a file
 constexpr std::size_t kNameOfOneValue = 64;          ///< bytes; a value with a longer name counts more than once
 
 constexpr const char* kNoObject = "is not a JSON object";
@@ -33,16 +34,16 @@ constexpr const char* kDamaged = "the file is damaged";
 
 constexpr const char* kDamagedFile = "the file is damaged: put it back as it was, or remove it";
 
-/// Builds a tree from the events of the parser, which ends at the first that is refused. Scalars that are no strings
-/// are kept as they are written.
+/// Builds a tree from the events of the JSON parser, and stops the parser at the first value that it rejects. Scalars
+/// other than strings are kept as written.
 class TreeReader final : public nlohmann::json_sax<Json> {
  public:
   Tree tree;
   std::size_t most = kMostValues;
-  const char* reason = nullptr;  ///< for which it was refused
-  std::size_t bytes = 0;         ///< read when it was found to be no JSON, else 0
+  const char* reason = nullptr;  ///< reason of the rejection
+  std::size_t bytes = 0;         ///< bytes read before a syntax error; 0 without one
 
-  /// Whether this is one object.
+  /// Parses `text`; returns whether it is one JSON object.
   bool read(const std::string& text) {
     const bool valid = Json::sax_parse(text, this);
     if (reason == nullptr && !tree.is_map()) reason = kNoObject;
@@ -54,7 +55,7 @@ class TreeReader final : public nlohmann::json_sax<Json> {
   bool number_integer(number_integer_t value) override { return put(Tree::scalar(std::to_string(value))) != nullptr; }
   bool number_unsigned(number_unsigned_t value) override { return put(Tree::scalar(std::to_string(value))) != nullptr; }
   bool number_float(number_float_t, const string_t& text) override {
-    std::string own = text;  // with the decimal point of the locale
+    std::string own = text;  // may have the decimal point of the locale
     for (char& c : own) c = std::string_view("+-0123456789eE").find(c) == std::string_view::npos ? '.' : c;
     return put(Tree::scalar(std::move(own))) != nullptr;
   }
@@ -75,7 +76,8 @@ class TreeReader final : public nlohmann::json_sax<Json> {
   }
 
  private:
-  /// Where the value to come belongs. What is open does not move: only the innermost grows.
+  /// Returns where the next value is stored. Pointers to open lists and maps stay valid, because only the innermost one
+  /// grows.
   Tree& place() {
     if (open_.empty()) return tree;
     Tree& inner = *open_.back();
@@ -100,7 +102,7 @@ class TreeReader final : public nlohmann::json_sax<Json> {
   std::size_t values_ = 0;
 };
 
-/// A scalar or a list of a row.
+/// Returns a scalar or a list as the value of a row.
 Scalar scalar_of(const Tree& value) {
   if (value.kind == Tree::Kind::null) return {};
   if (value.kind == Tree::Kind::list) return JsonList{to_json_line(value)};
@@ -115,7 +117,7 @@ Scalar scalar_of(const Tree& value) {
   return read(0.0).value_or(0.0);
 }
 
-/// Adds the values of a map and of the maps within it to a row. Returns why they do not fit, or null.
+/// Adds the values of a map and of its nested maps to a row. Returns the reason if a limit is exceeded, else null.
 const char* add_fields(Row& row, const Tree& map, const std::string& prefix) {
   for (const Tree::Entry& entry : map.entries) {
     const std::string name = prefix + entry.key;
@@ -132,7 +134,7 @@ const char* add_fields(Row& row, const Tree& map, const std::string& prefix) {
 
 void append_quoted(std::string& out, std::string_view text) {
   const auto is_plain = [](char c) { return c >= ' ' && c <= '~' && c != '"' && c != '\\'; };
-  // A tenth of the time of a run would go into the search of others for what to escape.
+  // Fast path: searching such texts for characters to escape would take a tenth of the time of a run.
   if (std::all_of(text.begin(), text.end(), is_plain)) {
     out += '"';
     out += text;
@@ -142,10 +144,10 @@ void append_quoted(std::string& out, std::string_view text) {
   }
 }
 
-/// The beginning of a value in a list or map: what separates it from the one before, and the line that it is on.
+/// Writes the separator and the indentation before each value of a list or map.
 class Next {
  public:
-  /// `indent`: what a line of the list begins with; "" for one line alone.
+  /// `indent`: line break and indentation of the list itself; "" to write all values in one line.
   explicit Next(const std::string& indent) : indent_(indent.empty() ? "" : indent + "  ") {}
   void operator()(std::string& out) {
     out += separator_;
@@ -186,7 +188,8 @@ void append(std::string& out, const Scalar& value) {
   out += text.empty() ? "null" : text;
 }
 
-/// The fields from number `field` on that share the prefix `prefix`, as a map; `field` is then behind the last of them.
+/// Appends the fields that begin with `prefix`, starting at index `field`, as a map. Afterwards `field` is the index
+/// after the last of them.
 void append(std::string& out, const Row& row, std::size_t& field, std::string_view prefix, const std::string& indent) {
   Next next(indent);
   out += "{";
@@ -227,7 +230,7 @@ Row RowLines::read(const std::string& line) {
   std::optional<Row> row;
   if (line.size() <= kMostLineBytes) row = parse_json_row(line, &reason);
   if (!row) throw Error(place(), reason, kDamaged);
-  // Names that repeat all that is around them would fill the memory where there are many.
+  // Long joined names count as several values, because many of them would fill the memory.
   for (const auto& field : row->fields) values_ += 1 + field.first.size() / kNameOfOneValue;
   if (number_ > kMostLines || values_ > kMostLineValues)
     throw Error(place(), "the file is too large: at most 1.1 million lines and 20 million values", kDamaged);

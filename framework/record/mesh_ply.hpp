@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Files of closed surfaces.
+// Converts closed surfaces to PLY files.
 #pragma once
 
 #include <palpate/surface.hpp>
@@ -8,9 +8,9 @@
 
 namespace palpate {
 
-/// Returns a mesh as PLY 1.0, binary with the least byte first, for a large mesh: vertices of x, y, z, nx, ny, nz and
-/// `deviation`, as the property is called, in single precision, and triangles. `comment` is one line, to which the
-/// resolution is added.
+/// Returns a mesh as PLY 1.0 in the format binary_little_endian, which suits large meshes. Vertices have x, y, z, nx,
+/// ny, nz and the standard deviation in single precision; `deviation` is the name of the last property. `comment` is
+/// one line; the resolution is appended to it.
 std::string mesh_ply(const Surface& mesh, const std::string& deviation, const std::string& comment);
 
 }  // namespace palpate

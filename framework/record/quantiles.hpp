@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: MIT
-// What is said of a sample without estimating anything: its mean and its quantiles.
+// Descriptive statistics of a sample: mean and quantiles.
 #pragma once
 
 #include <vector>
 
 namespace palpate {
 
-/// Of finite values; 0 of none. Equal values are their own mean, to the bit.
+/// Returns the mean of finite values; 0 without values. The mean of equal values is exactly that value.
 double mean_of(const std::vector<double>& values);
 
-/// Linear interpolation between order statistics; `share` 0 is the least value, 0.5 the median, 1 the largest. `sorted`
-/// holds at least one value; infinite ones are allowed, and what lies between a finite value and one of them is
-/// infinite.
+/// Returns a quantile by linear interpolation between order statistics: `share` 0 is the least value, 0.5 the median, 1
+/// the largest. `sorted` must have at least one value. Values may be infinite; a quantile between a finite and an
+/// infinite value is infinite.
 double quantile(const std::vector<double>& sorted, double share);
 
 }  // namespace palpate

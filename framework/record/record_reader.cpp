@@ -19,10 +19,10 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// By LineKind.
+/// Names of the values of LineKind.
 constexpr std::array<std::string_view, 9> kKinds{"manifest", "attempt", "setup", "intent", "tap",
                                                  "timing",   "objects", "note",  "end"};
-/// By Ending::How.
+/// Names of the values of Ending::How.
 constexpr std::array<const char*, 3> kHows{"done", "failed", "interrupted"};
 
 constexpr const char* kNoEnding =
@@ -45,12 +45,12 @@ std::optional<Ending::How> how_of(const Row& end) {
   return static_cast<Ending::How>(found - kHows.begin());
 }
 
-/// Of a file beside the record: what a stranger writes there leads nowhere else.
+/// Whether a name is that of a file in the record's own folder, so that a manipulated record cannot name other files.
 bool is_plain_name(const std::string& name) {
   return !name.empty() && name != "." && name != ".." && name.find('/') == std::string::npos;
 }
 
-/// None where the line does not say how, or names a file elsewhere.
+/// Returns the ending in a line; nullopt if it lacks a valid `end` or names a file in another folder.
 std::optional<Ending> ending_of(Row line) {
   constexpr std::string_view kSummary = "summary.";
   constexpr std::string_view kFiles = "files.";
@@ -78,7 +78,7 @@ std::optional<Ending> ending_of(Row line) {
   return out;
 }
 
-/// Calls `use` with each line that has its end.
+/// Calls `use` with each line that has a line end.
 template <class Use>
 void for_lines(std::string_view text, const Use& use) {
   for (std::size_t begin = 0, end; (end = text.find('\n', begin)) != std::string::npos; begin = end + 1)
@@ -116,7 +116,7 @@ RecordLine RecordReader::read(std::string_view line) {
     lines_.skip();
     if (line.size() > kMostManifestBytes) refuse("is too long: a line has at most 64 MiB");
     const std::string text(line);
-    // Its own words would name a line within this one.
+    // Replace the place in the message of the parser, which counts lines within this line.
     const auto trouble = catch_error([&] { out.tree = parse_json(text, file()); });
     if (trouble)
       throw Error(lines_.place(), trouble->where() == file().string() ? trouble->reason() : "is not a JSON object",
@@ -300,7 +300,8 @@ RecordEnd read_record_end(const fs::path& directory) {
 
 int attempts_in_row(const fs::path& directory) {
   std::string text;
-  // Asking how often is no time to fail, unless the file system does: who adds an attempt tells what is wrong.
+  // A record that cannot be read counts as no attempts, unless the file system fails; HeldRecord reports the error
+  // later.
   const auto trouble = catch_error([&] { text = read_if_there(directory / kRecordFile).value_or(""); });
   if (trouble && trouble->kind() == Error::Kind::run) throw *trouble;
   int out = 0;

@@ -1,31 +1,32 @@
 // SPDX-License-Identifier: MIT
-// The record of a run, record.jsonl: all that happened, a JSON object a line, in its order. It only grows. Who runs the
-// run holds it locked, and its last line says how the run ended. The first key of a line says what it is:
+// The record of a run, record.jsonl: all events in their order, one JSON object per line. It only grows. The process
+// that executes the run holds it locked. The last line records how the run ended. The first key of a line is its kind:
 //
 // | first key | line |
 // |---|---|
 // | manifest | program, build, config and plugins; the first line |
-// | attempt | a process begins or carries on the run, before it builds the experiment |
-// | setup | the same, once it is built: whether taps are announced, who reads which model |
-// | intent | a tap that cannot be repeated, before it is made |
-// | tap | a tap that was made, before any model takes it in |
-// | timing | how long that took |
-// | objects | what is known of each object, at the end |
-// | note | what else was found out |
-// | end | how the run, or this attempt at it, ended |
+// | attempt | a process starts or resumes the run, before it builds the experiment |
+// | setup | the process has built the experiment: whether taps are announced, and the readers of each model |
+// | intent | announces a tap that cannot be repeated, before it is made |
+// | tap | a tap that was made, before the models process it |
+// | timing | times of the phases of this tap |
+// | objects | results for each object at the end |
+// | note | any other finding |
+// | end | how the run, or this attempt, ended |
 //
-// Laws, all of which RecordReader checks but the last:
+// Laws; RecordReader checks all except the last one:
 //
-// 1. the first line is a manifest, and no other is;
-// 2. attempts count 1, 2, 3 ... and say how many taps there are; setup n follows attempt n, before an intent or a tap;
-// 3. taps count 1, 2, 3 ...;
-// 4. where they are announced, intent k stands before tap k, once;
+// 1. the first line is a manifest, and no other line is;
+// 2. attempts are numbered 1, 2, 3 ... and contain the number of taps so far; setup n follows attempt n, before an
+//    intent or a tap;
+// 3. taps are numbered 1, 2, 3 ...;
+// 4. if taps are announced, exactly one intent k precedes tap k;
 // 5. timing k follows tap k;
-// 6. behind an end that says done stands nothing, and it says how many taps there are; behind another only an attempt;
-// 7. only the last line may lack its line end; it is then no line;
-// 8. summary.json without an end means that the record was cut: RunStatus::cut.
+// 6. no line follows an end `done`, which contains the number of taps; only an attempt may follow any other end;
+// 7. only the last line may lack its line end; it is then ignored;
+// 8. a summary.json without an end means that the record was cut (RunStatus::cut).
 //
-// Lines of other kinds and fields of other names are passed over. runs/README.md has the fields.
+// Lines of other kinds and unknown fields are ignored. The fields are listed in runs/README.md.
 #pragma once
 
 #include "config/compose.hpp"
@@ -49,10 +50,10 @@ inline constexpr const char* kTapsTable = "taps.csv";
 
 enum class LineKind { manifest, attempt, setup, intent, tap, timing, objects, note, end, other };
 
-/// Returns what a line is by its first key alone.
+/// Returns the kind of a line from its first key alone.
 LineKind kind_of_line(std::string_view line);
 
-/// How a run ended, or an attempt at it.
+/// The end of a run or of an attempt.
 struct Ending {
   enum class How { done, failed, interrupted };
   struct File {
@@ -62,20 +63,20 @@ struct Ending {
   };
 
   How how = How::interrupted;
-  std::string reason;       ///< why it stopped
-  Row summary;              ///< empty of an interrupted run
-  std::vector<File> files;  ///< beside the record, which were made from it
+  std::string reason;       ///< reason of the end
+  Row summary;              ///< empty for an interrupted run
+  std::vector<File> files;  ///< files next to the record that were made from it
 };
 const char* ending_name(Ending::How how);
 
 struct RecordLine {
   LineKind kind = LineKind::other;
-  Row row;                    ///< of attempt, intent, tap, timing, note and end
-  Tree tree;                  ///< of the others, which hold lists
-  std::optional<Ending> end;  ///< of end, too
+  Row row;                    ///< content of attempt, intent, tap, timing, note and end
+  Tree tree;                  ///< content of the other kinds, which contain lists
+  std::optional<Ending> end;  ///< parsed content of an `end`
 };
 
-/// The times in a line `timing`.
+/// Returns the times in a line `timing`.
 TapTimes times_of(const Row& timing);
 
 /// Reads the lines of a record one by one, in their order.
@@ -83,8 +84,8 @@ class RecordReader {
  public:
   explicit RecordReader(std::filesystem::path file) : lines_(std::move(file)) {}
 
-  /// Returns a line, given without its end. Throws Error, naming file and line, for one that is no object or too long,
-  /// and for one that breaks a law.
+  /// Parses `line`, which has no line end. Throws Error, with file and line, if the line is not an object, is too long
+  /// or breaks a law.
   RecordLine read(std::string_view line);
 
   const std::filesystem::path& file() const { return lines_.file(); }
@@ -102,52 +103,52 @@ class RecordReader {
   RowLines lines_;
   bool begun_ = false;  ///< the manifest was read
   std::int64_t attempts_ = 0;
-  bool set_up_ = false;     ///< the last attempt is
-  bool announces_ = false;  ///< its taps are announced
-  std::int64_t taps_ = 0;   ///< whose results were read
-  bool announced_ = false;  ///< the next one was announced
+  bool set_up_ = false;     ///< whether the last attempt has its setup
+  bool announces_ = false;  ///< whether the taps of this attempt are announced
+  std::int64_t taps_ = 0;   ///< number of taps with a result
+  bool announced_ = false;  ///< whether the next tap was announced
   LineKind last_ = LineKind::other;
-  std::optional<Ending::How> end_;  ///< of the last line
+  std::optional<Ending::How> end_;  ///< end in the last line, if it is one
 };
 
-/// All that a record holds.
+/// Content of a record.
 struct RunRecord {
   std::filesystem::path file;
-  std::optional<Tree> manifest;   ///< none where nothing is recorded
-  std::vector<Row> attempts;      ///< with `end`, how it ended, of those that came to an end
-  std::optional<Tree> setup;      ///< the last one
-  std::vector<Row> taps;          ///< a row each
-  std::optional<Row> intent;      ///< of a tap whose result is not there
-  std::vector<TapTimes> timings;  ///< a kill may have lost some
+  std::optional<Tree> manifest;   ///< nullopt if the record is empty
+  std::vector<Row> attempts;      ///< attempts that ended have the field `end`
+  std::optional<Tree> setup;      ///< setup of the last attempt
+  std::vector<Row> taps;          ///< one row per tap
+  std::optional<Row> intent;      ///< announced tap without a result
+  std::vector<TapTimes> timings;  ///< times of the taps; a kill may have lost some
   std::vector<Row> objects, notes;
-  std::optional<Ending> end;  ///< of the last line
+  std::optional<Ending> end;  ///< end in the last line, if it is one
 
-  /// The build that began it, "" if that is not known.
+  /// Returns the hash of the build that started the run; "" if it is not known.
   std::string build() const;
-  /// Whether it tells alone that the run failed before it could begin.
+  /// Whether the record contains only that the run failed before it could begin.
   bool is_failure_alone() const { return manifest && manifest->find("build") == nullptr && attempts.empty(); }
 };
 
-/// Reads the record in a directory; an empty one where there is none. Throws Error as RecordReader does.
+/// Returns the record in `directory`; an empty one if there is none. Throws Error as RecordReader does.
 RunRecord read_run_record(const std::filesystem::path& directory);
 
-/// The manifest alone, without looking at what is behind it; none where there is none. Throws Error.
+/// Returns the manifest and reads no other line; nullopt if there is none. Throws Error.
 std::optional<Tree> read_manifest(const std::filesystem::path& directory);
 
-/// What the last whole line of a record says, without reading what is before it.
+/// State of a run according to the last complete line of its record.
 struct RecordEnd {
-  bool begun = false;         ///< there is a line
-  std::optional<Ending> end;  ///< none of a run that is under way or was broken off
+  bool begun = false;         ///< whether the record has a line
+  std::optional<Ending> end;  ///< nullopt for a run that is running or was killed
 };
 
-/// Throws Error for a damaged line.
+/// Reads only the last complete line of a record. Throws Error if this line is damaged.
 RecordEnd read_record_end(const std::filesystem::path& directory);
 
-/// How many attempts were made since one came to an end, the last ones; a damaged line counts, too. Throws Error where
-/// the file system fails.
+/// Returns the number of attempts in the last series without an `end` between them, without checking the lines. Throws
+/// Error if the file system fails.
 int attempts_in_row(const std::filesystem::path& directory);
 
-/// The times of the taps as a table.
+/// Returns the times of the taps as a table.
 std::vector<Row> timing_rows(const std::vector<TapTimes>& timings);
 
 }  // namespace palpate

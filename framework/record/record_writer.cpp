@@ -58,7 +58,7 @@ void HeldRecord::clear() {
 }
 
 void HeldRecord::add_manifest(const Tree& manifest, bool sync) {
-  before();  // while there is nothing to read
+  before();  // read the record before it has its first line
   append(to_json_line(manifest) + "\n", sync);
   begun_ = true;
 }
@@ -66,7 +66,7 @@ void HeldRecord::add_manifest(const Tree& manifest, bool sync) {
 void HeldRecord::add_attempt(const Row& attempt) {
   const auto taps = static_cast<std::int64_t>(before().taps.size());
   check_held();
-  log();  // cuts
+  log();  // deletes an incomplete last line
   Row row;
   row.add("attempt", attempts_ + 1);
   row.add("at", now_text());

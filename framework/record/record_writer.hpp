@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The record of a run held by this process, which adds to it: the one writer of record.jsonl.
+// Writer of record.jsonl, the record of a run. It locks the file, so that no other process can write there.
 #pragma once
 
 #include "config/tree.hpp"
@@ -15,46 +15,50 @@
 
 namespace palpate {
 
-/// Lines are written whole, each with one call, and none is ever changed. Every method that writes throws Error where
-/// another process may be writing there, as FileLock::check() says, and where writing fails; then the record is as it
-/// was, unless only the sync failed.
+/// Appends complete lines with one system call each, and never changes a line. The methods that write throw Error if
+/// another process may be writing too (see FileLock::check()) or if writing fails. The record is then unchanged, unless
+/// only the sync failed.
 class HeldRecord {
  public:
-  /// Makes the directory if need be and locks its record. Throws Error of kind `busy` if another process holds it.
+  /// Makes the directory if it does not exist, and locks its record. Throws Error of kind `busy` if another process
+  /// holds it.
   explicit HeldRecord(const std::filesystem::path& directory);
 
-  /// What is recorded by earlier processes. Read once. Throws Error as RecordReader does.
+  /// Returns what earlier processes recorded. Reads the record at the first call only. Throws Error as RecordReader
+  /// does.
   const RunRecord& before();
 
-  /// Whether there is a manifest, and whether the last line is an end, by now.
+  /// Whether the record now has a manifest; whether its last line is now an `end`.
   bool begun() const { return begun_; }
   bool ended() const { return ended_; }
 
-  /// Throws Error where the directory is no longer the one that was opened: nothing more can be recorded.
+  /// Throws Error if the path of the directory no longer leads to the directory that was opened.
   void check_in_place() const { lock_.check_in_place(); }
   void check_held() const { lock_.check(); }
 
-  /// Takes everything out, for a run that failed before it could begin: it begins anew.
+  /// Deletes all lines, so that a run that failed before it could begin can begin again.
   void clear();
-  /// Its first entry is `manifest`.
+  /// Appends the first line. The first entry of `manifest` has the key `manifest`.
   void add_manifest(const Tree& manifest, bool sync);
-  /// An attempt of this process, noted before anything else it does. `attempt` has what there is to know beside number,
-  /// time and taps; what a kill or a full disk left of a last line is cut off, and noted as `cut`, bytes.
+  /// Appends the line of this process's attempt, before all other lines except the manifest. `attempt` holds further
+  /// fields besides number, time and taps. An incomplete last line, left by a kill or a full disk, is deleted first;
+  /// the field `cut` gives its bytes.
   void add_attempt(const Row& attempt);
-  /// The same attempt, once the experiment is built. `models`: who reads which.
+  /// Appends a line for the same attempt after the experiment is built. `models` lists the readers of each model.
   void add_setup(bool announces, const Tree& models, bool sync);
-  /// A tap, or one that is announced. With `sync` it is on the disk on return.
+  /// Appends the line of a tap that was made, or of an intent. With `sync` the line is on the disk on return.
   void add_tap(const Row& tap, bool sync);
-  /// Its times, behind it. A call of its own: a disk that has room for the tap alone keeps that.
+  /// Appends the times of the tap. This is a separate call, so that a disk with room for the tap alone still stores the
+  /// tap.
   void add_timing(const TapTimes& times);
   void add_objects(const std::vector<Row>& objects, bool sync);
-  /// One line each; `kind` is the value of `note`.
+  /// Appends a line whose first field is `note` with the value `kind`, followed by the fields of `note`.
   void add_note(const std::string& kind, const Row& note, bool sync);
-  /// What all readers take the state of the run from: written when all else is on its way to the disk. Every write
-  /// before it, and then this one, is taken by the file system on return.
+  /// Appends the line from which all readers take the final state of the run; call this after all other writes. On
+  /// return, the file system has accepted all lines of the record.
   void add_end(const Ending& ending, bool sync);
 
-  /// Puts the name of the record on the disk, too.
+  /// Syncs the name of the record to the disk.
   void sync_name() const;
 
  private:
@@ -65,13 +69,13 @@ class HeldRecord {
   FileLock lock_;
   std::optional<RunRecord> before_;
   std::optional<AppendFile> log_;
-  bool begun_ = false;  ///< there is a manifest, of this process, too
-  bool ended_ = false;  ///< the last line is an end
+  bool begun_ = false;  ///< the record has a manifest, from an earlier process or this one
+  bool ended_ = false;  ///< the last line is an `end`
   std::int64_t attempts_ = 0;
-  std::uintmax_t cut_ = 0;  ///< bytes that were cut off
+  std::uintmax_t cut_ = 0;  ///< bytes of the incomplete last line that were deleted
 };
 
-/// Returns the time now as records have it: UTC, 2026-11-24T23:59:28Z.
+/// Returns the current UTC time in the format of records: 2026-11-24T23:59:28Z.
 std::string now_text();
 
 }  // namespace palpate

@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Adds the origins of the value at `path` and of those below.
+/// Adds the origins of the value at `path` and of the values below this path.
 void add_origins(const Tree& tree, const std::string& path, const std::vector<std::string>& lines,
                  std::map<std::string, std::string>& out) {
   const auto line = static_cast<std::size_t>(tree.place.line);
@@ -34,7 +34,7 @@ void add_origins(const Tree& tree, const std::string& path, const std::vector<st
 
 RunIdentity read_identity(const fs::path& directory) {
   RunIdentity out;
-  // A damaged manifest is reported by its readers.
+  // Other readers report a damaged manifest.
   catch_error([&] {
     const std::optional<Tree> manifest = read_manifest(directory);
     if (const Tree* name = manifest ? manifest->find("name") : nullptr) out.name = name->text;
@@ -57,7 +57,9 @@ std::map<std::string, std::string> recorded_origins(const fs::path& directory) {
   const Reading reading = read_bounded(file, kMostConfigBytes, Origin::record);
   if (!reading) return out;
   const std::vector<std::string> lines = places_of_lines(reading.text);
-  catch_error([&] { add_origins(parse_yaml(reading.text, file.string()), "", lines, out); });  // then nothing is known
+  catch_error([&] {
+    add_origins(parse_yaml(reading.text, file.string()), "", lines, out);
+  });  // without the config, the result stays empty
   return out;
 }
 

@@ -17,7 +17,7 @@
 namespace palpate {
 namespace {
 
-/// Nothing for null and for what is not a finite number; `append_text` appends what is a text.
+/// Appends a scalar, or nothing for null and numbers that are not finite. `append_text` appends texts.
 template <class AppendText>
 void append_scalar(std::string& out, const Scalar& value, const AppendText& append_text) {
   if (const auto* truth = std::get_if<bool>(&value)) {
@@ -27,7 +27,7 @@ void append_scalar(std::string& out, const Scalar& value, const AppendText& appe
   } else if (const auto* real = std::get_if<double>(&value)) {
     if (!std::isfinite(*real)) return;
     append_number(out, *real);
-    // Readers of JSON take -0 for the integer 0.
+    // JSON parsers read "-0" as the integer 0 and lose the sign.
     if (*real == 0.0 && std::signbit(*real)) out += ".0";
   } else if (const auto* text = std::get_if<std::string>(&value)) {
     append_text(*text);
@@ -36,22 +36,22 @@ void append_scalar(std::string& out, const Scalar& value, const AppendText& appe
   }
 }
 
-/// The value at `name`, null where there is something else.
+/// Returns the value at `name` if it has type T, else null.
 template <class T>
 const T* value_of(const Row& row, std::string_view name) {
   const Scalar* value = row.find(name);
   return value != nullptr ? std::get_if<T>(value) : nullptr;
 }
 
-/// For a spreadsheet, which computes what begins like a formula: an apostrophe makes it a text. Whatever has
-/// apostrophes in front of that gets one more, so that taking one away gives back the same text.
+/// Adds an apostrophe to a text that begins like a formula, so that a spreadsheet does not compute it. A formula that
+/// already has leading apostrophes gets one more, so that removing one restores the text.
 std::string guarded(const std::string& text) {
   const std::size_t begin = text.find_first_not_of("' \t\r\n");
   const bool computed = begin != std::string::npos && std::string_view("=+-@").find(text[begin]) != std::string::npos;
   return computed && decimal_length(text) != text.size() ? "'" + text : text;
 }
 
-/// As it stands in a file.
+/// Appends the scalar in the format of a CSV file.
 void append_cell(std::string& out, const Scalar& value) {
   append_scalar(out, value, [&](const std::string& text) { out += csv_text(guarded(text)); });
 }
@@ -121,7 +121,7 @@ std::string csv_cell(const Scalar& value) {
 }
 
 std::vector<std::string> names_of(const std::vector<Row>& rows) {
-  std::list<std::string> names;  // nothing in it moves
+  std::list<std::string> names;  // a list keeps references valid when it grows
   std::unordered_map<std::string_view, std::list<std::string>::iterator> places;
   for (const Row& row : rows) {
     auto at = names.begin();  // where the next field of this row is expected
@@ -153,7 +153,7 @@ std::string to_csv(const std::vector<Row>& rows) {
   std::vector<const Scalar*> cells(header.size());
   for (const Row& row : rows) {
     std::fill(cells.begin(), cells.end(), nullptr);
-    std::size_t column = 0;  // of the next field, if it follows the one before it in the header, too
+    std::size_t column = 0;  // expected column of the next field
     for (const auto& [name, value] : row.fields) {
       if (column == header.size() || header[column] != name) column = columns.at(name);
       const Scalar*& cell = cells[column++];

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Named scalars in an order: one line of a table, one JSON object. Names are dotted ("height_gp.jitter"): JSON
-// nests by the dots, CSV keeps them.
+// An ordered list of named scalars: one line of a table or one JSON object. Names are dotted ("height_gp.jitter"): JSON
+// writes nested objects, CSV the dotted names.
 #pragma once
 
 #include <palpate/record_fields.hpp>
@@ -23,38 +23,39 @@ struct Row {
     add(std::move(name), value ? Scalar(*value) : Scalar());
   }
 
-  /// The value at `name`, or null if there is none.
+  /// Returns the value at `name`; null if there is none.
   const Scalar* find(std::string_view name) const;
-  /// The same, looked for at `near` first, which becomes its place: where the row before has it, one like it does, too.
+  /// Returns the value at `name`, tests index `near` first, and sets `near` to the index found. This is fast for a
+  /// series of rows with the same fields.
   const Scalar* find(std::string_view name, std::size_t& near) const;
-  /// The number at `name`, of a truth value 1 or 0; none where there is none, or null, or a text, or what is not
-  /// finite: that is null in every file.
+  /// Returns the number at `name`; a truth value counts as 1 or 0. Returns nullopt for a missing field, null, a text or
+  /// a number that is not finite, which all files contain as null.
   std::optional<double> number(std::string_view name) const;
-  /// The truth value at `name`; none where there is something else.
+  /// Returns the truth value at `name`; nullopt if there is none.
   std::optional<bool> flag(std::string_view name) const;
-  /// The text at `name`; "" where there is something else.
+  /// Returns the text at `name`; "" if there is none.
   std::string text(std::string_view name) const;
-  /// Takes away what stands at `name`.
+  /// Removes the field `name`.
   void erase(std::string_view name);
-  /// Whatever stands at `name`, as csv_cell() has it; "" where there is none.
+  /// Returns the value at `name` formatted by csv_cell(); "" if there is none.
   std::string cell(std::string_view name) const;
 };
 
-/// Appends the shortest digits that read back as the same bits, with an exponent where that is shorter.
+/// Appends the fewest digits that read back as the same bits, with an exponent if that is shorter.
 void append_number(std::string& out, double value);
 
-/// Text of one scalar as it stands in a CSV cell: shortest digits that read back as the same bits, empty for null and
-/// for what is not a finite number, quoted where commas, quotes or line ends need it.
+/// Returns a scalar as the text of a CSV cell. Numbers have the fewest digits that read back as the same bits; null and
+/// numbers that are not finite become empty. Texts are quoted like csv_text().
 std::string csv_cell(const Scalar& value);
 
-/// Text quoted for CSV where it needs to be.
+/// Returns the text, in quotes if it contains commas, quotes or line ends.
 std::string csv_text(const std::string& text);
 
-/// The names of all fields of all rows, each behind the one that it follows in its row.
+/// Returns the names of all fields of all rows; each name comes after the name that precedes it in its row.
 std::vector<std::string> names_of(const std::vector<Row>& rows);
 
-/// A table of rows that may differ in their fields: the header is names_of() them; cells are found by name. A text that
-/// a spreadsheet would compute ("=1+1") has an apostrophe before it.
+/// Returns a table of rows, which may have different fields; the header is names_of(rows). A text that a spreadsheet
+/// would compute ("=1+1") gets a leading apostrophe.
 std::string to_csv(const std::vector<Row>& rows);
 
 }  // namespace palpate

@@ -25,7 +25,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Returns what is known before anything is built.
+/// Returns the manifest, which contains only data known before the experiment is built.
 Tree manifest_of(const RunEnvironment& environment, const ResolvedConfig& config) {
   Tree out = Tree::map(
       {{"name", Tree::quote(config.options.name)}, {"id", Tree::quote(config.id)}, {"at", Tree::quote(now_text())}});
@@ -44,8 +44,8 @@ Tree manifest_of(const RunEnvironment& environment, const ResolvedConfig& config
   return out;
 }
 
-/// Notes that the experiment is built: its models, each with its readers. A tap that cannot be repeated must leave a
-/// trace even if nobody sees its end.
+/// Records that the experiment is built, and its models with their readers. Taps that cannot be repeated are announced,
+/// so that the record has a trace of them even if the process ends during the tap.
 void set_up(const Experiment& experiment, RunDirectory& directory) {
   Tree models = Tree::map();
   for (const PlannedModel& one : experiment.plan().models) {
@@ -56,7 +56,7 @@ void set_up(const Experiment& experiment, RunDirectory& directory) {
   directory.set_up(!experiment.backend().repeatable(), models);
 }
 
-/// Has what follows forced to disk where the config or the backend needs it.
+/// Turns on syncing of all later writes if the config or the backend requires it.
 void sync_if_needed(const ResolvedConfig& config, const Experiment& experiment, RunDirectory& directory) {
   const LogOptions::Sync sync = config.options.log.sync;
   const bool once = !experiment.backend().repeatable();
@@ -72,7 +72,7 @@ void move_away(const fs::path& directory) {
   }
 }
 
-/// Builds the experiment. An error names an option; the config has the place where that was written.
+/// Builds the experiment. An Error about an option gets the location in the config where the option was set.
 std::unique_ptr<Experiment> build_experiment(const ResolvedConfig& config, const ExperimentSetup& setup) {
   try {
     return std::make_unique<Experiment>(config.options, setup);
@@ -83,8 +83,8 @@ std::unique_ptr<Experiment> build_experiment(const ResolvedConfig& config, const
   }
 }
 
-/// Ends a run that could not be resumed as it had ended: one that had failed has failed for the same reason, and one
-/// whose arm another process moves was only tried.
+/// Records the end of a run that could not be resumed. A run that had failed gets its former ending again. If another
+/// process uses the arm, the attempt ends as interrupted.
 void take_back(RunDirectory& held, const std::optional<Ending>& before, const Error& trouble) {
   if (before && before->how == Ending::How::failed) {
     held.end(*before);
@@ -93,7 +93,7 @@ void take_back(RunDirectory& held, const std::optional<Ending>& before, const Er
   }
 }
 
-/// Throws Error where a person would be asked before taps that put nothing at risk.
+/// Throws Error if the taps can be repeated, so that asking a person before each of them is pointless.
 void check_worth_asking(const ResolvedConfig& config, const Experiment& experiment) {
   if (!experiment.backend().repeatable()) return;
   throw Error("command line",
@@ -102,7 +102,7 @@ void check_worth_asking(const ResolvedConfig& config, const Experiment& experime
               "leave it out");
 }
 
-/// Throws Error where the taps of a run are made by somebody else. `command`: of the program, that was to make them.
+/// Throws Error if the backend of the config does not match `taps`. `command` is "run" or "resume", for the hint.
 void check_who_taps(const ResolvedConfig& config, Taps taps, const std::string& command) {
   const std::string& backend = config.options.backend.type;
   const bool by_caller = backend == kCaller;
@@ -116,8 +116,8 @@ void check_who_taps(const ResolvedConfig& config, Taps taps, const std::string& 
               command == "run" ? "choose the backend caller" : "resume it with 'palpate resume'");
 }
 
-/// Throws Error where a directory holds a run that a new one would overwrite. Returns whether it holds this very run,
-/// finished by the same build.
+/// Throws Error if a directory holds a run that a new one would overwrite. Returns true if the directory holds the same
+/// run, finished by the same build.
 bool is_done_there(const RunEnvironment& environment, const ResolvedConfig& config, const fs::path& directory,
                    const RunStatus& status) {
   const std::string where = directory.string();
@@ -152,7 +152,7 @@ HeightBounds bounds_of(const ResolvedConfig& config, const Experiment& experimen
   return height_bounds(experiment.scene().desk(), length("overrun"), length("hover"));
 }
 
-/// Runs `part`, and returns why the run ends with it; "" if it does not throw.
+/// Calls `part` and returns the message of its exception; "" if it does not throw.
 template <class Part>
 std::string failure_in(const Part& part) {
   try {
@@ -171,8 +171,8 @@ RunReport report_done(const RunEnvironment& environment, RunDirectory& held) {
 
 }  // namespace
 
-/// Observes the experiment of a run: asks for leave, records a tap first and shows it then, and writes maps where the
-/// config says so.
+/// Observes the experiment of a run. Records each tap before it calls the run's observers, and writes maps if the
+/// config requires them. A tap needs the permission of all observers.
 class Run::Recorder final : public Observer {
  public:
   Recorder(Run& run, std::vector<Observer*> observers)
@@ -195,7 +195,7 @@ class Run::Recorder final : public Observer {
 
   void record(const TapRecord& tap, const std::array<double, kPhases>& seconds) override {
     TapRecord told = tap;
-    told.shown_expected_rmse = shown_.expected_rmse;  // stands with the times, not with the tap
+    told.shown_expected_rmse = shown_.expected_rmse;  // recorded with the times, not with the tap
     {
       const PhaseClock::Scope log(&experiment_.clock(), Phase::log);
       directory_.record(told, seconds);
@@ -208,7 +208,7 @@ class Run::Recorder final : public Observer {
   void announce_shown(const TapRecord& tap) {
     try {
       shown_ = errors_for_displays();
-    } catch (const std::exception&) {  // a model that fails here fails no reader of the run
+    } catch (const std::exception&) {  // an error of a model used only for displays must not end the run
     }
     announce_recorded(tap);
   }
@@ -263,10 +263,10 @@ std::unique_ptr<Run> Run::start(const RunEnvironment& environment, const Resolve
                                 std::vector<Observer*> observers) {
   const Stopwatch watch;
   check_who_taps(config, options.taps, "run");
-  if (is_running(directory)) FileLock{directory / kRecordFile};  // throws: busy
+  if (is_running(directory)) FileLock{directory / kRecordFile};  // throws Error of kind `busy`
   RunStatus status;
   if (const auto trouble = catch_error([&] { status = read_record(directory); })) {
-    // What cannot be read can be moved aside.
+    // With `force`, a record that cannot be read can still be moved aside.
     if (!options.force || trouble->kind() != Error::Kind::usage) throw Error(*trouble);
     status.state = RunStatus::State::unfinished;
   }
@@ -278,16 +278,16 @@ std::unique_ptr<Run> Run::start(const RunEnvironment& environment, const Resolve
     RunDirectory held(directory);
     return std::unique_ptr<Run>(new Run(config, report_done(environment, held)));
   }
-  // Built before the directory is touched: what only building finds out leaves no trace.
+  // Build the experiment before the directory is changed, so that an error in building leaves no trace.
   std::unique_ptr<Experiment> experiment =
       build_experiment(config, {environment.host, environment.interrupted, nullptr, directory.string()});
   if (options.asks_before_taps) check_worth_asking(config, *experiment);
   if (is_there) {
-    const FileLock old(directory / kRecordFile);  // somebody may have taken it up meanwhile
+    const FileLock old(directory / kRecordFile);  // throws if another process has resumed the old run meanwhile
     move_away(directory);
   }
   auto held = std::make_shared<RunDirectory>(directory);
-  // Another process may have run it, whole or in part, while this one was still building.
+  // Another process may have started or finished this run while this process built the experiment.
   if (read_record(directory).state != RunStatus::State::absent) {
     throw Error(directory.string(), "another process has just finished this run",
                 "repeat the command to see how it ended", Error::Kind::busy);
@@ -303,7 +303,7 @@ std::unique_ptr<Run> Run::start(const RunEnvironment& environment, const Resolve
 
 std::unique_ptr<Run> Run::resume(const RunEnvironment& environment, const fs::path& directory,
                                  const ResumeOptions& options, std::vector<Observer*> observers) {
-  // Read first: what is no run directory is not made one.
+  // Read the config first, so that a directory without a run does not become a run directory.
   const ResolvedConfig config = load_run(environment.host, directory);
   return resume(environment, config, std::make_shared<RunDirectory>(directory), options, std::move(observers));
 }
@@ -324,7 +324,7 @@ std::unique_ptr<Run> Run::resume(const RunEnvironment& environment, const Resolv
   }
   const auto objection = options.force ? std::nullopt : objection_to_build(environment, config, before);
   if (objection) throw *objection;
-  // What it says does not hold any more, or is of a record that was cut.
+  // The summary is out of date, or belongs to a record that was cut.
   std::error_code none;
   fs::remove(directory / kSummaryFile, none);
   if (before.is_failure_alone()) held->clear();
@@ -341,7 +341,7 @@ std::unique_ptr<Run> Run::resume(const RunEnvironment& environment, const Resolv
   if (!trouble)
     return std::unique_ptr<Run>(
         new Run(watch, environment, config, std::move(held), std::move(experiment), std::move(observers)));
-  catch_error([&] { take_back(*held, end, *trouble); });  // the first one counts
+  catch_error([&] { take_back(*held, end, *trouble); });  // report the first error, not one of take_back()
   throw Error(*trouble);
 }
 
@@ -355,7 +355,7 @@ Belief& Run::look(const QuantitySet& quantities) {
     experiment_->look();
     return own;
   }
-  // An exception may leave taps half taken in. So the copy is kept only after success.
+  // Keep the copy only after success: an exception may leave it with a tap that is only partly processed.
   std::unique_ptr<Experiment> copy = std::move(copy_);
   if (!copy || !has_all(looked_at_)) {
     const QuantitySet wanted = looked_at_ | quantities;
@@ -416,15 +416,16 @@ const RunReport& Run::finish() {
   return *report_;
 }
 
-/// Writes what ends the run. `failure`: why it did not end well, else ""; then it is thrown, once all is written.
+/// Writes the end of the run. If `failure`, the reason why the run failed, is not "", it is thrown after all is
+/// written.
 void Run::end(std::string failure) {
   tap_.reset();
-  RunReport& report = report_.emplace();  // a run that failed is finished as well
+  RunReport& report = report_.emplace();  // a failed run is finished, too
   report.directory = directory_->path();
   RunResult result;
   if (failure.empty()) failure = failure_in([&] { result = experiment_->result(); });
   directory_->check_in_place();
-  // A model that failed once is not asked again.
+  // After a failure, use only the counts: the models may fail again.
   if (!failure.empty()) result = experiment_->counts();
   for (const Backend::Learnt& one : experiment_->backend().learnt()) directory_->note_learnt(one.name, one.value);
   report.interrupted = result.interrupted;
@@ -460,7 +461,7 @@ RunReport resume_run(const RunEnvironment& environment, const fs::path& director
 }
 
 std::vector<PlannedModel> models_of(const RunEnvironment& environment, const ResolvedConfig& config) {
-  const bool connects = config.options.backend.type != "simulator";  // as far as anybody knows
+  const bool connects = config.options.backend.type != "simulator";  // any other backend may connect to a device
   return build_experiment(config, {environment.host, environment.interrupted, connects ? no_backend(false) : nullptr})
       ->plan()
       .models;
@@ -498,13 +499,13 @@ RestoredFiles restore_files(const RunEnvironment& environment, RunDirectory& hel
     const RecordedRun run = read_recorded_run(environment.host, directory);
     RunReplay replay(environment, run);
     replay.advance_to(static_cast<int>(run.taps.size()));
-    replay.experiment().result();  // reads what the run read at its end
+    replay.experiment().result();  // reads the same models as the run at its end
     const auto [name, text] = surface_file(replay.experiment());
     restore(one, name == one.name ? text : "");
     const bool is_made = out.lost.empty() || out.lost.back() != one.name;
     if (!is_made && replay.truth_lost()) throw Error(*replay.truth_lost());
   }
-  // Last, as a run does.
+  // The summary is written last, as in a run.
   const std::string summary = to_json(record.end->summary);
   if (read_if_there(directory / kSummaryFile) != summary) {
     held.write(kSummaryFile, summary);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A run, from its config to its summary, in its directory.
+// Executes a run in its directory, from its config to its summary.
 #pragma once
 
 #include "experiment/experiment.hpp"
@@ -22,17 +22,17 @@
 
 namespace palpate {
 
-/// What every run of this process shares.
+/// Data that all runs of this process share.
 struct RunEnvironment {
   const PluginHost& host;
   const Installation& installation;
   std::vector<std::string> command_line;
-  const std::atomic<bool>* interrupted;  ///< set by the user's wish to stop; may be null
+  const std::atomic<bool>* interrupted;  ///< true after the user asked to stop; may be null
 };
 
 /// The backend of a run whose taps are made by a calling program.
 inline constexpr const char* kCaller = "caller";
-/// Who makes the taps of a run.
+/// The maker of the taps of a run: its backend, or the calling program.
 enum class Taps { by_backend, by_caller };
 
 /// Names of files that an ended run had lost.
@@ -53,7 +53,8 @@ struct RunReport {
 struct StartOptions {
   bool force = false;  ///< move an old run aside
   Taps taps = Taps::by_backend;
-  bool asks_before_taps = false;  ///< an observer asks a person: only where taps cannot be repeated
+  bool asks_before_taps =
+      false;  ///< an observer asks a person before each tap; allowed only if taps cannot be repeated
 };
 
 struct ResumeOptions {
@@ -63,20 +64,22 @@ struct ResumeOptions {
   bool asks_before_taps = false;
 };
 
-/// A run that this process holds.
+/// A run whose directory this process holds locked.
 class Run {
  public:
-  /// Starts `config` in `directory`; `observers` (which outlive it) hear of each tap after the record. A finished run
-  /// of the same build is left alone: is_finished(). A finished run of another build, a failed or an interrupted one
-  /// throws Error with the remedy; with `force` the old directory is moved to <id>.old-N first.
+  /// Starts `config` in `directory`. `observers`, which must outlive the run, are called after each tap is recorded. If
+  /// the directory holds the same run, finished by the same build, nothing is run: see is_finished(). Throws Error if
+  /// the directory holds a failed or interrupted run, or a run of another build. With `force` the old directory is
+  /// moved to <id>.old-N instead.
   static std::unique_ptr<Run> start(const RunEnvironment& environment, const ResolvedConfig& config,
                                     const std::filesystem::path& directory, const StartOptions& options,
                                     std::vector<Observer*> observers = {});
 
-  /// Resumes the run in `directory` from its config and its recorded taps; repeats none. A finished run is left alone.
+  /// Resumes the run in `directory` from its config and its recorded taps, and repeats no tap. A finished run stays as
+  /// it is.
   static std::unique_ptr<Run> resume(const RunEnvironment& environment, const std::filesystem::path& directory,
                                      const ResumeOptions& options, std::vector<Observer*> observers = {});
-  /// The same with `config`, which is that of the run, in a directory that this process holds.
+  /// Resumes a run in a directory that this process holds; `config` is the config of that run.
   static std::unique_ptr<Run> resume(const RunEnvironment& environment, const ResolvedConfig& config,
                                      std::shared_ptr<RunDirectory> held, const ResumeOptions& options,
                                      std::vector<Observer*> observers = {});
@@ -85,29 +88,31 @@ class Run {
   Run(const Run&) = delete;
   Run& operator=(const Run&) = delete;
 
-  /// Makes all taps that are left, and finishes. If the run fails, its summary says so, and the Error, of kind `run`,
-  /// is thrown on.
+  /// Makes all remaining taps and finishes the run. If the run fails, its summary contains the reason, and an Error of
+  /// kind `run` is thrown.
   const RunReport& run();
 
-  /// Returns the tap that the caller is to make, announced in the record: the same until tell(). `scores` (may be null;
-  /// finite, one per candidate) choose it in the place of the strategy. Returns null when the run is over and finished.
+  /// Returns the tap that the caller must make; the record announces it. Until tell() is called, the same tap is
+  /// returned. `scores`, if not null, replace the scores of the strategy: one finite number per candidate. Returns null
+  /// when the run is finished.
   const TapRecord* ask(const Eigen::VectorXd* scores);
-  /// Takes the result of that tap. Throws Error of kind `usage` for a value that no arm can have measured (see
-  /// answers/tap_result_checks.hpp; `hover` and `overrun` of the backend bound the heights): nothing is recorded then.
-  /// Throws Error of kind `run`, and finishes the run, when it cannot continue.
+  /// Records the result of the pending tap. Throws Error of kind `usage`, and records nothing, for a value that no arm
+  /// can have measured (see answers/answer.hpp; `hover` and `overrun` of the backend bound the heights). If the run
+  /// cannot continue, finishes it and throws Error of kind `run`.
   void tell(TapResult result);
-  /// Whether ask() has returned a tap whose result tell() has not taken.
+  /// Whether ask() has returned a tap for which tell() has not been called yet.
   bool is_pending() const { return tap_.has_value(); }
 
-  /// Writes what ends the run, its budget reached or not, and reports it; later calls report the same.
+  /// Ends the run, even before its budget is reached, and returns its report. Later calls return the same report.
   const RunReport& finish();
   bool is_finished() const { return report_.has_value(); }
 
-  /// Returns a belief with the arrays of these quantities as of now: that of the run if its readers have them, else of
-  /// a copy that takes in the same taps, so that looking does not change the record.
+  /// Returns a belief with the current arrays of these quantities. This is the belief of the run if its readers already
+  /// use these quantities. Otherwise it is the belief of a copy with the same taps, so that the call does not change
+  /// the record.
   Belief& look(const QuantitySet& quantities);
 
-  /// Only of a run that was not finished before.
+  /// Do not call this for a run that was finished before.
   Experiment& experiment() { return *experiment_; }
   const ResolvedConfig& config() const { return config_; }
   const std::filesystem::path& directory() const { return directory_ ? directory_->path() : report_->directory; }
@@ -118,20 +123,20 @@ class Run {
   Run(const Stopwatch& watch, const RunEnvironment& environment, const ResolvedConfig& config,
       std::shared_ptr<RunDirectory> directory, std::unique_ptr<Experiment> experiment,
       std::vector<Observer*> observers);
-  /// Of a run that was finished before.
+  /// For a run that was finished before.
   Run(const ResolvedConfig& config, RunReport report);
   void end(std::string failure);
 
   const RunEnvironment* environment_ = nullptr;
   Stopwatch watch_;
   ResolvedConfig config_;
-  // Null of a run that was finished before.
+  // Null for a run that was finished before.
   std::shared_ptr<RunDirectory> directory_;
   std::unique_ptr<Experiment> experiment_;
   std::unique_ptr<Recorder> recorder_;
   QuantitySet looked_at_;
   std::unique_ptr<Experiment> copy_;  ///< see look()
-  std::optional<TapRecord> tap_;      ///< that the caller is to make
+  std::optional<TapRecord> tap_;      ///< the pending tap, which the caller must make
   std::optional<RunReport> report_;
 };
 
@@ -143,17 +148,18 @@ RunReport start_run(const RunEnvironment& environment, const ResolvedConfig& con
 RunReport resume_run(const RunEnvironment& environment, const std::filesystem::path& directory,
                      const ResumeOptions& options, const std::vector<Observer*>& observers = {});
 
-/// Returns the models of this config, each with its readers. Of backends only the simulator is built, as others may
-/// connect to something: what they would read is left out. Throws Error for what only building finds out.
+/// Returns the models of this config, each with its readers. Only the simulator is built, because other backends may
+/// connect to a device; the models that such backends read are left out. Throws Error if the experiment cannot be
+/// built.
 std::vector<PlannedModel> models_of(const RunEnvironment& environment, const ResolvedConfig& config);
 
 /// Returns <runs>/<slug>/<id>.
 std::filesystem::path directory_of(const ResolvedConfig& config, const std::filesystem::path& runs);
 
-/// Stands in for a backend where nothing is tapped: tap() throws.
+/// Returns a backend for experiments that make no taps: its tap() throws.
 std::shared_ptr<Backend> no_backend(bool truth_known);
 
-/// Returns why a run is not to be resumed: it has taps of another build than this one. nullopt if it has not.
+/// Returns an Error if the run has taps of another build and so must not be resumed; else nullopt.
 std::optional<Error> objection_to_build(const RunEnvironment& environment, const ResolvedConfig& config,
                                         const RunRecord& record);
 

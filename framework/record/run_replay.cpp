@@ -14,21 +14,20 @@ namespace palpate {
 
 namespace fs = std::filesystem;
 
-/// Stands in for the backend of a recorded run: reads what that backend read, rejects the lines that it rejected, and
-/// makes no tap.
+/// Replaces the backend of a recorded run: it reads the same quantities, rejects the same lines, and makes no taps.
 class RecordedBackend final : public Backend {
  public:
-  /// `run` may be null: nothing was recorded.
+  /// `run` is null if there is no record.
   RecordedBackend(const RecordedRun* run, bool truth_known) : run_(run), truth_known_(truth_known) {}
 
-  /// Has the next lines be those of a tap, from 1.
+  /// Sets the tap, counted from 1, to which the next lines belong.
   void set_tap(int tap) {
     tap_ = tap;
     tries_ = 0;
   }
 
   TapResult tap(const TapRequest&) override {
-    throw Error("", "a recorded run makes no taps", {}, Error::Kind::run);  // would be a mistake in this program
+    throw Error("", "a recorded run makes no taps", {}, Error::Kind::run);  // a programming error
   }
   bool repeatable() const override { return true; }
   bool scene_is_truth() const override { return truth_known_; }
@@ -48,7 +47,7 @@ class RecordedBackend final : public Backend {
     return out;
   }
 
-  /// Models that the first row has were read before the first tap.
+  /// Returns the quantities whose models appear in the first row: those were read before the first tap.
   QuantitySet reads() const override {
     QuantitySet out;
     if (has("height_gp.signal")) out.insert(quantity::kUncertainty);
@@ -64,7 +63,7 @@ class RecordedBackend final : public Backend {
   const RecordedRun* run_;
   bool truth_known_;
   int tap_ = 1;
-  mutable std::size_t tries_ = 0;  ///< lines of this tap so far
+  mutable std::size_t tries_ = 0;  ///< number of lines tested for this tap so far
 };
 
 namespace {
@@ -101,7 +100,7 @@ void compare(const Row& recorded, const Row& replayed, int tap, ReplayReport& re
 
 using Seconds = std::array<double, kPhases>;
 
-/// Returns the seconds by phase up to each tap, those before the first one included.
+/// Returns the sums of the seconds per phase up to each tap; the first entry is before the first tap.
 std::vector<Seconds> seconds_until(const RecordedRun& run) {
   std::vector<Seconds> out(1);
   for (const TapTimes& tap : run.timings) {
@@ -126,7 +125,7 @@ ReadPlan readers_from_first_tap(const std::string& name, const QuantitySet& quan
 
 RunReplay::RunReplay(const RunEnvironment& environment, const RecordedRun& run, const ReadPlan& readers) : run_(run) {
   ExperimentOptions options = run.config.options;
-  // A run that ended by this rule failed by its arm: here its taps are taken in like any other's.
+  // This stop rule ends runs whose arm failed; the replay must process all their taps.
   options.stop.failed_in_a_row.reset();
   const auto make = [&](bool truth_known) {
     return catch_error([&] {
@@ -138,7 +137,7 @@ RunReplay::RunReplay(const RunEnvironment& environment, const RecordedRun& run, 
   const std::optional<Error> trouble = make(run.truth_known());
   if (!trouble) return;
   options.scene.objects.clear();
-  if (make(false)) throw Error(*trouble);  // the objects are not to blame
+  if (make(false)) throw Error(*trouble);  // the objects are not the cause
   if (run.truth_known()) truth_lost_ = trouble;
 }
 
@@ -182,7 +181,7 @@ bool RunReplay::run_next(Observer& observer) {
 RunResult RunReplay::result() {
   RunResult out = experiment_->result();
   if (!truth_lost_) return out;
-  // A row has the errors of the state that its tap was chosen from.
+  // The row of a tap contains the errors of the state before this tap.
   const auto next = static_cast<std::size_t>(taps_);
   const Row none;
   out.errors = errors_in(next < run_.rows.size() ? run_.rows[next] : run_.summary.value_or(none));
@@ -211,11 +210,11 @@ ReplayReport replay_run(const RunEnvironment& environment, const fs::path& direc
   if (!run.summary) return report;
   const Row& summary = *run.summary;
   const std::string reason = summary.text("stop_reason");
-  // Had it gone on, it would have inferred: to ask its stop rules, or to look for a candidate.
+  // A run that did not fail updated its models once more, for its stop rules or to look for a candidate.
   if (!run.failed()) experiment.reason_to_stop();
-  // A failed run asks its models nothing any more: see Run::end().
+  // A failed run does not read its models again: see Run::end().
   RunResult result = run.failed() ? experiment.counts() : experiment.result();
-  // A run that failed, or ended before its budget, did so for a reason that the taps alone do not show.
+  // The taps alone do not contain the reason why a run failed or ended before its budget.
   if (run.failed() || made < run.config.options.taps) result.stop_reason = reason;
   compare(summary, summary_list().row({result, run.config, run.failed() ? reason : "", {}, {}, {}, {}}), 0, report);
   return report;
@@ -223,7 +222,7 @@ ReplayReport replay_run(const RunEnvironment& environment, const fs::path& direc
 
 std::vector<Row> earlier_summaries(const RunEnvironment& environment, const RecordedRun& run) {
   const std::vector<Seconds> seconds = seconds_until(run);
-  // A kill may have lost lines of the times, which no run depends on.
+  // A kill may have lost lines `timing`; runs do not depend on them.
   const bool timed = seconds.size() == run.taps.size() + 1;
   const double all = total(seconds.back());
   RunReplay replay(environment, run);

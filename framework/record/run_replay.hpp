@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The models of a recorded run brought back to any of its taps: for replay, reports, explanations, and summaries after
+// Restores the models of a recorded run after any of its taps, for replay, reports, explanations, and summaries after
 // fewer taps.
 #pragma once
 
@@ -19,37 +19,38 @@ namespace palpate {
 
 class RecordedBackend;
 
-/// Takes in the recorded taps of a run, one after the other. It writes nothing, moves nothing and builds no backend:
-/// the drawn lines that the run's backend rejected are recorded with each tap. Where a program scored, taps are chosen
-/// as the record has them, and none after the last.
+/// Passes the recorded taps of a run to new models, one after the other. It writes nothing, moves nothing and builds no
+/// backend; each recorded tap lists the drawn lines that the backend rejected. If a program scored the candidates, the
+/// record provides the choices, and no tap is chosen after the last one.
 class RunReplay {
  public:
-  /// Before the first tap. `environment` and `run` must outlive it; `readers`: those who look, beside the run's own.
-  /// Throws Error for whatever only building finds out.
+  /// Starts before the first tap. `environment` and `run` must outlive the replay. `readers` are additional readers of
+  /// the models, besides those of the run. Throws Error if the experiment cannot be built.
   ///
-  /// The objects of the scene serve the truth alone. If they cannot be built any more, because a file is gone or has
-  /// changed, the desk is bare: the models are the same, and no truth is known.
+  /// The objects of the scene are needed only for the truth. If they can no longer be built, because a file was removed
+  /// or changed, the replay uses an empty desk. The models are then the same, but the truth is not known.
   RunReplay(const RunEnvironment& environment, const RecordedRun& run, const ReadPlan& readers = {{}, std::nullopt});
   ~RunReplay();
 
-  /// Returns why the truth, which the run knew, is not known any more; nullopt if it is, or if the run did not know it.
+  /// Returns why the truth that the run knew is no longer known; nullopt if it is known, or if the run did not know it.
   const std::optional<Error>& truth_lost() const { return truth_lost_; }
 
-  /// Takes in the recorded taps up to the `taps`-th, from 0 to all; never back.
+  /// Processes recorded taps until `taps` of them are processed, from 0 to all. A smaller number than before has no
+  /// effect on the models.
   void advance_to(int taps);
   int taps() const { return taps_; }
 
-  /// Returns the tap that would be chosen next, by the strategy or, where a program scored, by the record.
+  /// Returns the tap that the strategy would choose next; if a program scored the candidates, the recorded tap.
   std::optional<TapRecord> next();
 
-  /// Runs the next recorded tap as the loop does: chooses it, takes the recorded result, and tells `observer`. Returns
-  /// false if the loop chooses none.
+  /// Runs the next recorded tap as the loop does: chooses it, uses the recorded result, and calls `observer`. Returns
+  /// false if no tap is chosen.
   bool run_next(Observer& observer);
 
-  /// Returns the result as of now. Where the truth is lost, it has the recorded errors of this state.
+  /// Returns the result after the taps processed so far. If the truth is lost, the result contains the recorded errors.
   RunResult result();
 
-  /// The experiment as of now. Not to be run.
+  /// Returns the experiment after the taps processed so far. Do not call its run().
   Experiment& experiment() { return *experiment_; }
 
  private:
@@ -62,13 +63,13 @@ class RunReplay {
   int taps_ = 0;
 };
 
-/// Returns a plan whose one reader, by its name, reads these quantities and the surface from the first tap on.
-/// `is_optional`: ReadPlan::Reader::is_optional.
+/// Returns a plan with one reader, called `name`, which reads these quantities and the surface from the first tap on.
+/// For `is_optional` see ReadPlan::Reader.
 ReadPlan readers_from_first_tap(const std::string& name, const QuantitySet& quantities, bool is_optional = false);
 
-/// A number that came out differently in a replay.
+/// A number that differs between the record and the replay.
 struct Difference {
-  int tap = 0;  ///< 0: of the summary
+  int tap = 0;  ///< 0 for a field of the summary
   std::string field;
   std::string recorded;
   std::string replayed;
@@ -76,25 +77,25 @@ struct Difference {
 
 struct ReplayReport {
   int taps = 0;
-  int numbers = 0;  ///< compared
-  /// Why numbers that need the truth are left out; nullopt if they are not: see RunReplay::truth_lost().
+  int numbers = 0;  ///< number of compared values
+  /// Reason why numbers that need the truth are not compared; nullopt if they are. See RunReplay::truth_lost().
   std::optional<Error> truth_lost;
   std::vector<Difference> differences;
 };
 
-/// Chooses and takes in the recorded taps of a run with the same models, and compares every number but clocks, memory
-/// and host, as text, bit for bit.
+/// Replays a run: chooses each recorded tap again with the same models, and compares all numbers bit for bit, as text.
+/// Times, memory and host are not compared.
 ReplayReport replay_run(const RunEnvironment& environment, const std::filesystem::path& directory);
 
-/// Returns the summaries that a run, which ended well, would have had after each of its taps but the last. Each equals
-/// that of a run whose budget ends there, in all that depends on the config alone: choosing a tap looks at no budget,
-/// and reading a model changes none. Only the engines are those that `engine: {type: auto}` took for the run's own
-/// budget; where it would take another for less, numbers may differ as far as `belief.engine.accuracy` lets them.
-/// Throws Error where the run knew the truth and that is lost.
+/// Returns the summaries that a successful run would have had after each of its taps except the last. Each equals the
+/// summary of a run with that budget in all fields that depend only on the config, because choices do not depend on the
+/// budget. There is one exception: the engines are those that `engine: {type: auto}` chose for the full budget. Where
+/// `auto` would choose another engine for a smaller budget, numbers may differ within `belief.engine.accuracy`. Throws
+/// Error if the run knew the truth and the truth is lost.
 ///
-/// Of the rest the record knows this much: `compute.*` are the sums of the recorded times so far; `wall_seconds` and
-/// `compute_seconds` the share of the run's own that these sums have in those of all taps; the memory, which nobody
-/// measured then, is null. The id is that of the run.
+/// Measured fields are estimates: `compute.*` are sums of the recorded times so far. `wall_seconds` and
+/// `compute_seconds` are those of the run, scaled by the ratio of these sums to the sums over all taps. The memory was
+/// not measured after each tap and is null. The id is that of the run.
 std::vector<Row> earlier_summaries(const RunEnvironment& environment, const RecordedRun& run);
 
 }  // namespace palpate

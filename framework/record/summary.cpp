@@ -24,13 +24,13 @@ double thread_cpu_seconds() {
 
 using Column = std::pair<const char*, const Eigen::VectorXd*>;
 
-/// x, y and one column per map; a null map leaves its cells empty.
+/// Returns a table with x, y and one column per map; the cells of a null map are empty.
 std::string grid_csv(const Candidates& candidates, const std::vector<Column>& columns) {
   std::string out = "x,y";
   for (const Column& column : columns) out.append(",").append(column.first);
   out += '\n';
-  // Half of the time of a short run would go into numbers that were written before: those of the axes, of columns with
-  // the same map as an earlier one, and of places with the same value as the one before.
+  // Formatting numbers again would take half of the time of a short run. So texts are reused for the axes, for columns
+  // with the same map, and for cells with the same value as the previous cell.
   const auto text_of = [](double value) {
     std::string text;
     append_number(text, value);
@@ -38,12 +38,12 @@ std::string grid_csv(const Candidates& candidates, const std::vector<Column>& co
   };
   std::vector<std::string> xs;
   for (int column = 0; column < candidates.columns; ++column) xs.push_back(text_of(candidates.starts(column, 0)) + ",");
-  std::vector<std::size_t> first;  // of the columns with the same map
+  std::vector<std::size_t> first;  // first column with the same map
   for (const Column& column : columns) {
     const auto same = [&](const Column& other) { return other.second == column.second; };
     first.push_back(static_cast<std::size_t>(std::find_if(columns.begin(), columns.end(), same) - columns.begin()));
   }
-  std::vector<std::pair<std::size_t, std::size_t>> cells(columns.size());  // places in `out`, and lengths
+  std::vector<std::pair<std::size_t, std::size_t>> cells(columns.size());  // offsets in `out`, and lengths
   for (int row = 0, cell = 0; row < candidates.rows; ++row) {
     const std::string y = text_of(candidates.starts(cell, 1));
     for (int column = 0; column < candidates.columns; ++column, ++cell) {
@@ -123,7 +123,7 @@ std::string maps_csv(Belief& belief, const BeliefState& state) {
         std::pair{"u", quantity::kUncertainty}, std::pair{"w", quantity::kLabelMean},
         std::pair{"p", quantity::kObjectProbability}}) {
     const bool is_of_label_gp = quantity == quantity::kObjectProbability && state.find("p") == nullptr;
-    if (is_of_label_gp) continue;  // the label GP's probability follows from w
+    if (is_of_label_gp) continue;  // the probability of the label GP follows from w
     if (const Eigen::VectorXd* const map = array_of(belief, quantity)) columns.emplace_back(column, map);
   }
   return columns.empty() ? "" : grid_csv(belief.candidates(), columns);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What is measured for the summary of a run, and its surface; the fields of the summary are in fields.cpp.
+// Measurements for the summary of a run, and the files of its surface and maps. The fields of the summary are in
+// fields.cpp.
 #pragma once
 
 #include "experiment/experiment.hpp"
@@ -11,7 +12,7 @@
 
 namespace palpate {
 
-/// Wall time and CPU time of this thread since it was made.
+/// Measures the wall time and the CPU time of the current thread since the construction of the stopwatch.
 class Stopwatch {
  public:
   Stopwatch();
@@ -23,18 +24,18 @@ class Stopwatch {
   double cpu_;
 };
 
-/// The most memory that this process has had.
+/// Returns the peak memory of this process.
 std::int64_t peak_rss_bytes();
 
-/// Returns the name and the content of the file of the reconstructed surface: surface.csv (a row per candidate:
-/// position, mean and standard deviation of the height, object probability, reconstruction, truth), or for a mesh
-/// surface.ply. In the stage `summary`.
+/// Returns name and content of the file of the reconstructed surface; call this in the stage `summary`. A height map
+/// gives surface.csv, with one row per candidate: position, mean and standard deviation of the height, object
+/// probability, reconstruction, truth. A mesh gives surface.ply.
 std::pair<std::string, std::string> surface_file(Experiment& experiment);
 
-/// Returns the true heights at fixed candidates, metres.
+/// Returns the true heights at fixed candidates, in metres.
 Eigen::VectorXd true_heights(const Candidates& candidates, const Scene& scene);
 
-/// Returns the arrays that the readers of a run have now, as CSV; "" if there are none, or no fixed candidates.
+/// Returns the current arrays of the belief as CSV; "" if there are none, or if the candidates are not fixed.
 std::string maps_csv(Belief& belief, const BeliefState& state);
 
 }  // namespace palpate

@@ -14,7 +14,7 @@ Body::Body(std::shared_ptr<const Shape> shape, double tilt)
 }
 
 void Body::place(double x, double y, double rotation) {
-  // Margin for rounding. Outside of the widened bounds, the shape is not evaluated.
+  // Margin for rounding errors; the shape is evaluated only inside the widened bounds.
   constexpr double kMargin = 1e-9;
   x_ = x;
   y_ = y;

@@ -20,7 +20,7 @@ class Body {
   /// Rotates the body about the vertical axis, and moves the origin of its frame to (x, y).
   void place(double x, double y, double rotation);
 
-  /// Returns the height above the desk at (x, y); 0 outside of the body. The outline belongs to the body.
+  /// Returns the height above the desk at (x, y); 0 outside of the body. Points on the outline count as inside.
   double height(double x, double y) const;
 
   /// Returns the distance from the line's origin to its first intersection with the body, metres; +infinity if there is
@@ -33,7 +33,7 @@ class Body {
   /// Returns the height of the highest point above the desk.
   double highest() const;
 
-  /// Returns the largest distance of the body from its position in a horizontal direction of unit length.
+  /// Returns how far the body extends from its position in a horizontal direction, a unit vector.
   double reach(double direction_x, double direction_y) const;
 
   double x() const { return x_; }

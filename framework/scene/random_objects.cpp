@@ -36,7 +36,7 @@ struct DrawOptions : Options {
   }
 };
 
-/// The options in place of a list of objects.
+/// The options `draw`, which may replace a list of objects.
 struct DrawnObjects : Options {
   DrawOptions draw;
   void list(Fields& fields) override {
@@ -45,7 +45,7 @@ struct DrawnObjects : Options {
 };
 
 /// Replaces each range of an object by a number. Range i becomes the number at share(i) of the range, where 0 is its
-/// lower end and 1 its upper end. Returns the number of ranges so far.
+/// lower end and 1 its upper end. Returns `count` plus the number of ranges in `tree`.
 int replace_ranges(Tree& tree, const std::string& path, const std::function<double(int)>& share, int count = 0) {
   if (const auto range = parse_continuous(tree, path)) {
     tree = number(range->at(share(count)), range->unit, tree);
@@ -77,7 +77,7 @@ int read_drawn(DrawnObjects& options, Tree described, const std::function<double
 
 bool draws_objects(const Tree& config) {
   const Tree* objects = config.find_path(kObjects);
-  // A single object without brackets is reported when the list is read.
+  // A single object without brackets is not a draw; it is reported when the list is read.
   return objects != nullptr && objects->is_map() && objects->find_path("type") == nullptr;
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Random objects: `scene.objects: {draw: {least: 2, most: 6, of: [...]}}` is replaced by a list of objects, drawn from
-// the seed, before any other code reads the config. The record has the list.
+// Random objects: `scene.objects: {draw: {least: 2, most: 6, of: [...]}}` is replaced by a list of objects before any
+// other code reads the config. The seed determines the list, and the record contains it.
 #pragma once
 
 #include "config/resolve.hpp"
@@ -10,12 +10,12 @@
 
 namespace palpate {
 
-/// Returns whether the objects of a composed config are drawn. An invalid draw counts, too.
+/// Returns whether the objects of a composed config are drawn. Returns true also for an invalid draw.
 bool draws_objects(const Tree& config);
 
 /// Replaces `draw` by the objects that `seed` draws. Their number is uniform between `least` and `most`. Each object is
 /// one of `of`, with equal probabilities, and each `uniform(a, b)` or `log_uniform(a, b)` in it becomes a number in
-/// that range. Each object has its own random stream, so that more objects begin with the same ones.
+/// that range. Each object has its own random stream, so a larger number of objects begins with the same objects.
 ///
 /// Throws Error for invalid objects, also if they are not drawn. Each item of `of` is read with all ranges at their
 /// lower ends, with all at their upper ends, and with each single range at the opposite end.

@@ -22,7 +22,7 @@ class Desk final : public Scene {
         margin_(options.min_object_height),
         effects_(options.effects.values),
         context_{factory, *this, seed, nullptr} {
-    // Shapes are created over an empty desk.
+    // Shapes are created while the scene has no bodies yet.
     std::vector<Body> bodies;
     for (const ObjectOptions& object : options.objects) {
       bodies.emplace_back(context_.create<const Shape>(object.shape), object.tilt);

@@ -22,7 +22,8 @@ struct AreaOptions : Options {
 
 /// The shape of an object and its pose.
 struct ObjectOptions : Options {
-  PluginChoice shape{"shape", {}, nullptr};  ///< chosen by `type`, with its options next to those below
+  PluginChoice shape{
+      "shape", {}, nullptr};  ///< chosen by `type`; its options are listed together with the following ones
   double at[2] = {0.115, 0.115};
   double rotation = 0.0;
   double tilt = 0.0;

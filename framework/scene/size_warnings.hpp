@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The warning about objects whose sizes a config sets only in part.
+// Makes the warning about objects whose sizes a config sets only in part.
 #pragma once
 
 #include "config/resolve.hpp"

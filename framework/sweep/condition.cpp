@@ -18,7 +18,7 @@ namespace palpate {
 namespace {
 
 using Value = Condition::Value;
-/// The truth of a condition; nullopt: undecided.
+/// Value of a condition; nullopt means undecided.
 using Decision = std::optional<bool>;
 
 constexpr const char* kHowTo = "write it like taps >= 12 and not belief.surface == two_part";
@@ -157,7 +157,7 @@ class Reader {
     if (!value_of_) return std::nullopt;
     const std::string written = fmt::format("{} {} {}", name, sign, value);
     const std::optional<Value> left = value_of_(name);
-    // Names are checked also where their values cannot change the result.
+    // An unknown name is an error even if its value cannot change the result.
     if (!left)
       throw Error(place_, fmt::format("the condition '{}' has the unknown name '{}'", written, name),
                   suggestion(name, known_));
@@ -192,7 +192,7 @@ class Reader {
   const std::string& place_;
   const Condition::Values& value_of_;
   const std::vector<std::string>& known_;
-  std::vector<std::string> tokens_;  ///< words, operators, parentheses, and quoted texts that keep their first quote
+  std::vector<std::string> tokens_;  ///< words, operators, parentheses, and quoted texts with their opening quote
   std::size_t next_ = 0;
 };
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Conditions on named values, such as the `where` of a sweep: taps >= 12 and (surface == two_part or not kernel ==
-// rbf).
+// Conditions on named values, such as the `where` of a sweep. Example: taps >= 12 and (surface == two_part or not
+// kernel == rbf).
 #pragma once
 
 #include "config/tree.hpp"
@@ -40,8 +40,8 @@ class Condition {
   /// `not rmse_m <= 3 mm` both exclude the job (Kleene's three-valued logic). `and` and `or` stop as soon as the result
   /// is certain, so that `spacing != none and spacing > 2 mm` is valid.
   ///
-  /// Throws Error, with the place of the condition, for an unknown name on the left; its hint comes from `known`. Texts
-  /// without an order and units of different dimensions are errors, too.
+  /// Throws Error, with the place of the condition, for an unknown name on the left; its hint comes from `known`. Also
+  /// throws Error for texts compared by order (<, >) and for units of different dimensions.
   bool holds(const Values& value_of, const std::vector<std::string>& known) const;
 
   const std::string& place() const { return place_; }

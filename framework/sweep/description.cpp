@@ -17,7 +17,7 @@ namespace palpate {
 namespace {
 
 constexpr std::size_t kMaxCombinations = 1'000'000;
-constexpr std::size_t kMaxSettings = 20'000'000;  ///< over all combinations: one setting per combination and key
+constexpr std::size_t kMaxSettings = 20'000'000;  ///< limit over all combinations; one setting per combination and key
 /// Layer of a swept group or type. It is above the swept options, which may not exist for every type.
 constexpr Layer kChoiceLayer = kSweepLayer + 1;
 
@@ -87,7 +87,7 @@ void take_out(Tree& blocks, const std::string& key) {
   std::vector<Tree>& items = list->items;
   if (std::none_of(items.begin(), items.end(), [&](const Tree& item) { return item.find(key) != nullptr; })) return;
   for (Tree& item : items) item.erase(key);
-  // Items that differed only in this key are now equal.
+  // Remove items that differed only in this key and are now equal.
   std::set<std::string> kept;
   const auto is_twin = [&](const Tree& item) { return !kept.insert(item.canonical()).second; };
   items.erase(std::remove_if(items.begin(), items.end(), is_twin), items.end());
@@ -250,7 +250,7 @@ bool SweepDescription::wanted(const Combination& combination, const Condition::V
     const bool swept = std::find(keys_.begin(), keys_.end(), name) != keys_.end();
     for (const std::string& choice : keys_) {
       if (!depends(name, choice)) continue;
-      if (swept) return Condition::Value{};  // another item of the list sets it
+      if (swept) return Condition::Value{};  // another item of the list sets this name
       // Nearly any word could be an option of a strategy, so an unknown word is a value.
       if (choice == kStrategy && !base(name)) continue;
       throw Error(*place, fmt::format("'{}' depends on '{}', which is swept", name, choice),

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The description of a sweep: the keys and values in `sweep:` of a config and on the command line, and their
-// combinations. The meaning of the keys is not checked here.
+// Description of a sweep: the keys and values in `sweep:` of a config and on the command line, and their combinations.
+// This file does not check the meaning of the keys.
 #pragma once
 
 #include "config/compose.hpp"
@@ -18,7 +18,7 @@ namespace palpate {
 struct SweepWords {
   std::vector<Axis> axes;                            ///< KEY=VALUES
   std::vector<std::pair<std::string, Tree>> blocks;  ///< sweep.BLOCK=...
-  std::vector<Override> expectations;                ///< expect...=...: not swept, but valid for the whole sweep
+  std::vector<Override> expectations;                ///< `expect...=...`: not swept; apply to the whole sweep
 };
 
 /// Throws Error for invalid words.
@@ -50,7 +50,7 @@ class SweepDescription {
   /// removed from zip, sobol and list, and set in the grid. Throws Error for an invalid description, and for more than
   /// a million combinations.
   SweepDescription(const Tree* config, const SweepWords& words);
-  SweepDescription(const SweepDescription&) = delete;  // combinations point to the axes
+  SweepDescription(const SweepDescription&) = delete;  // not copyable, because combinations point to the axes
   SweepDescription& operator=(const SweepDescription&) = delete;
 
   /// Returns the swept keys, in the order in which they are merged into a config.

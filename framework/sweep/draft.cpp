@@ -47,7 +47,7 @@ SweepDraft::SweepDraft(fs::path runs) : runs_(std::move(runs)), made_runs_(!fs::
   if (::mkdtemp(name.data()) == nullptr) throw cannot(name, std::strerror(errno));
   folder_ = name;
   std::error_code none;
-  fs::permissions(folder_, fs::status(runs_).permissions(), none);  // mkdtemp denies access to others
+  fs::permissions(folder_, fs::status(runs_).permissions(), none);  // mkdtemp denies access to other users
   make_folder(folder_ / "jobs");
   lock_ = FileLock(folder_ / "lock");
 }
@@ -61,7 +61,7 @@ SweepDraft::~SweepDraft() {
 void SweepDraft::add(const Job& job, const ResolvedConfig& config) {
   const fs::path directory = folder_ / "jobs" / job.id;
   make_folder(directory);
-  // Written in place, because no other process reads the folder before it gets its final name.
+  // No temporary file is needed, because no other process reads the folder before it gets its final name.
   AppendFile file(directory / "config.yaml");
   file.append(to_yaml_with_places(config.tree), false);
   file.flush();

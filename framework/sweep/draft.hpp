@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The directory of a sweep during planning. It has a temporary name until all jobs are checked and written.
+// The directory of a sweep during planning, with a temporary name until all jobs are checked and written.
 #pragma once
 
 #include "record/files.hpp"

@@ -14,7 +14,8 @@
 namespace palpate {
 namespace {
 
-/// Returns the row of a job after the taps of `occasion`. `rows` has one row per tap.
+/// Returns the row of a job at the checkpoint `occasion`, or the last row if the job does not reach it. `rows` has one
+/// row per tap.
 Row row_at(const Checkpoint& occasion, const std::vector<Row>& rows) {
   std::size_t taps = 1;
   while (taps < rows.size() && !occasion.has_come(static_cast<int>(taps), rows[taps - 1])) ++taps;

@@ -14,9 +14,9 @@ namespace palpate {
 /// Column that shows whether a job reached the goal of --until.
 inline constexpr const char* kReached = "reached";
 
-/// Returns the results after the taps of each occasion, and writes them as results_<key>.csv into the sweep's
-/// directory. A job that has not reached an occasion, or has failed, has its final row. With a goal, the column
-/// `reached` tells these jobs apart.
+/// Returns the results at each checkpoint in `occasions`, and writes them as results_<key>.csv into the sweep's
+/// directory. A job that has failed or has not reached a checkpoint has its final row. For a checkpoint with a goal,
+/// the column `reached` shows which jobs reached the goal.
 ///
 /// `complete` must compute the missing summaries; if it returns false, the result is nullopt. Throws Error for a number
 /// of taps that no job made, and for a damaged sweep.

@@ -22,9 +22,9 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// The use of a swept key in the jobs so far.
+/// How the jobs planned so far use a swept key.
 struct KeyUse {
-  const Axis* asker = nullptr;  ///< axis that sets the key; null: none yet
+  const Axis* asker = nullptr;  ///< axis that sets the key; null if no combination has set it yet
   bool takes_part = false;
   std::set<std::string> siblings;  ///< other options next to the key
 };
@@ -139,7 +139,7 @@ class Planner {
             job.values[key_numbers_.at(setting.axis->key)].empty() && !value_text(setting.value()).empty();
         any = any || left_out;
         if (left_out || one == &other) continue;
-        // A value that occurs twice in one list is an error.
+        // A repeated value in a list is an error.
         for (const SweptValue& same : other) {
           if (same.axis == setting.axis && same.digit != setting.digit) return false;
         }
@@ -215,7 +215,7 @@ Tree written_config(const std::filesystem::path& file, const Tree& base, const s
   Tree out = Tree::map();
   const Tree* name = base.find("name");
   out.at("name") = Tree::scalar(name != nullptr ? name->text : first.options.name, true);
-  // The groups of a strategy cannot be told apart here, so that the whole strategy is kept if any of them is needed.
+  // The groups of a strategy cannot be distinguished here, so the whole strategy is kept if any of them is needed.
   const bool needs_strategy = !alone || std::any_of(description.keys().begin(), description.keys().end(), is_choice);
   Tree kept = Tree::list();
   if (const Tree* defaults = own.find("defaults")) {
@@ -256,7 +256,7 @@ SweepPlan plan_sweep(Composer& composer, const PluginHost& host, const fs::path&
   }
 
   // The config without a combination; nullopt if it is incomplete, because the sweep sets the missing keys. Other
-  // errors in it are found with the jobs.
+  // errors in the config are found when the jobs are resolved.
   std::optional<ResolvedConfig> alone;
   catch_error([&] { alone = resolve_experiment(base, host); });
   const Condition::Values base_value = [&](const std::string& name) -> std::optional<Condition::Value> {

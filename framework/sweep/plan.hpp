@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The planning of a sweep: from its description to its jobs, each resolved and checked.
+// Plans a sweep: makes resolved and checked jobs from its description.
 #pragma once
 
 #include "config/compose.hpp"
@@ -16,11 +16,11 @@ namespace palpate {
 
 /// A planned sweep.
 struct SweepPlan {
-  Sweep sweep;  ///< with the directory that the sweep will have
+  Sweep sweep;  ///< contains the directory that the sweep will have
   Tree config;  ///< config from which `palpate sweep` makes the same jobs
 };
 
-/// Called with each job after its check, in the order of the jobs.
+/// A function that is called with each job after its check, in the order of the jobs.
 using JobSink = std::function<void(const Job& job, const ResolvedConfig& config)>;
 
 /// Composes, resolves and checks all jobs of `file` and `words`, the words after `palpate sweep CONFIG`: see

@@ -17,8 +17,9 @@ bool contains(const PoolTexts& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-/// Returns whether one of `keys` decides the option at `path`. Such a key lies above the path, or the path inherits
-/// from it, or it is a strategy. A choice next to the path decides it if some config lacks the option.
+/// Returns whether one of `keys` decides the option at `path`. A key decides the path if it lies above the path, if the
+/// path inherits from it, or if it is a strategy. A choice next to the path also decides it if some config lacks the
+/// option.
 bool is_decided(const std::string& path, const PoolTexts& keys, const std::vector<Row>& configs) {
   return std::any_of(keys.begin(), keys.end(), [&](const std::string& key) {
     if (is_at_or_below(path, key) || contains(config_keys().heirs_of(key), path)) return true;

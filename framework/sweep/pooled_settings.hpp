@@ -11,7 +11,7 @@
 
 namespace palpate {
 
-/// Jobs of a record that differ in nothing but the seed. One config describes all of them.
+/// Jobs of a record that differ only in the seed, so one config describes all of them.
 struct PooledSetting {
   std::size_t record = 0;  ///< index of the record
   std::string record_name;
@@ -20,7 +20,8 @@ struct PooledSetting {
   std::map<std::string, std::string> swept;    ///< values of the keys that the record sweeps, except for the seed
 };
 
-/// Returns whether a run depends on the option at `path`. It does not depend on the folder of a program, for example.
+/// Returns whether the results of a run depend on the option at `path`. They do not depend on the folder of a program,
+/// for example.
 bool decides_run(const std::string& path);
 
 /// Returns the options in which the configs differ although none of `keys` decides them. The options of plugins with
@@ -28,8 +29,8 @@ bool decides_run(const std::string& path);
 std::vector<std::string> further_differences(const std::vector<PooledSetting>& settings,
                                              const std::vector<std::string>& keys);
 
-/// Returns the value of each setting at `key`, one of `keys`, as text. Settings have the same text exactly if their
-/// configs have equal values there.
+/// Returns the value of each setting at `key`, one of `keys`, as text. Two settings have the same text if and only if
+/// their configs have equal values at `key`.
 std::vector<std::string> pooled_values(const std::vector<PooledSetting>& settings, const std::string& key,
                                        const std::vector<std::string>& keys);
 

@@ -38,7 +38,7 @@ bool is_one_of(const PoolTexts& names, const std::string& name) {
 
 bool is_scene(const std::string& key) { return is_at_or_below(key, kScene); }
 
-/// A sweep, or a run as a sweep of one job without keys.
+/// A record to combine: a sweep, or a run as a sweep of one job without keys.
 struct PoolRecord {
   Sweep sweep;
   std::string name;
@@ -80,7 +80,8 @@ class Pool {
 
  private:
   void collect_members() {
-    std::map<std::pair<std::string, std::string>, std::size_t> known;  // by id and, if names are groups, by record
+    std::map<std::pair<std::string, std::string>, std::size_t>
+        known;  // job number by id and, if names are groups, by record
     int repeated = 0;
     for (std::size_t source = 0; source < sources_.size(); ++source) {
       for (const Job& job : sources_[source].sweep.jobs) {
@@ -155,7 +156,7 @@ class Pool {
     keys_.emplace_back(kSeed);
   }
 
-  /// Sets the values of all settings at all keys.
+  /// Computes the value of each setting at each key.
   void make_values() {
     values_.assign(settings_.size(), {});
     for (const std::string& key : keys_) {
@@ -169,8 +170,8 @@ class Pool {
     if (is_one_of(by_, kName)) give_to(kName, "names", [](const std::string& key) { return !is_scene(key); });
   }
 
-  /// Removes the keys that have a single value per value of `owner`, because they are a part of it. Keys in `by` and
-  /// keys for which `may_belong` is false are kept.
+  /// Removes the keys that have only one value for each value of `owner`, because they are a part of `owner`. Keys in
+  /// `by` and keys for which `may_belong` is false are kept.
   void give_to(const std::string& owner, const char* plural,
                const std::function<bool(const std::string&)>& may_belong) {
     const auto place = std::find(keys_.begin(), keys_.end(), owner) - keys_.begin();
@@ -222,7 +223,7 @@ class Pool {
     return seed != nullptr ? seed->text : std::string();
   }
 
-  /// Notes the records that lack a scene of others, because their means are over different scenes.
+  /// Adds a note for each record that lacks a scene of other records, because then the means are over different scenes.
   void note_scenes() {
     for (std::size_t key = 0; key < keys_.size(); ++key) {
       if (!is_scene(keys_[key])) continue;
@@ -251,7 +252,7 @@ class Pool {
   std::vector<PooledSetting> settings_;
   std::vector<PoolMember> members_;
   PoolTexts keys_;                 ///< the seed is the last
-  std::vector<PoolTexts> values_;  ///< by setting; one value per key except the seed
+  std::vector<PoolTexts> values_;  ///< values of each setting, one per key except the seed
   PooledSweep out_;
 };
 

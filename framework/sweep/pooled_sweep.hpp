@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Several sweeps and runs of different plans as one sweep, for comparisons, curves and Pareto fronts.
+// Combines several sweeps and runs of different plans into one sweep, for comparisons, curves and Pareto fronts.
 #pragma once
 
 #include "sweep/sweep.hpp"
@@ -10,7 +10,7 @@
 
 namespace palpate {
 
-/// The jobs of several records. No file has this sweep.
+/// The jobs of several records as one sweep, which exists only in memory.
 struct PooledSweep {
   Sweep sweep;
   std::vector<std::string> notes;  ///< notes for the reader of the results, one line each
@@ -20,18 +20,19 @@ struct PooledSweep {
 ///
 /// The keys are all swept keys, `by`, the seed, and each further option in which the recorded configs differ. If the
 /// types of a plugin differ, the key is the plugin's block (`acquisition`), else the option (`kernel.length_scale`).
-/// Some options are keys only if `by` has them: options with one value per strategy, if the strategy is swept; and
-/// options with one value per name, except for scenes, if `by` has `name`. Options that do not affect results, such as
-/// `log`, are no keys.
+/// Some options are keys only if `by` contains them. If the strategy is swept, these are the options with one value per
+/// strategy. If `by` contains `name`, these are the options with one value per name, except for scenes. Options that do
+/// not affect results, such as `log`, are not keys.
 ///
 /// The value of a key that a record does not sweep comes from the configs of its jobs. Values are equal if the configs
 /// are equal: `2 cm` and `0.02 m`, or `scene=ring` and a config with the same objects. The text of a value is that of
 /// the first sweep with the value. If two different values have the same text, the later one is followed by the name of
 /// its record. The value of `strategy` for a record that does not sweep it is the name of the record.
 ///
-/// A run in several records is one job, the first one that has ended. If `by` has `name`, it is one job per record. The
-/// directory of the sweep is the common folder of the records. Throws Error for an empty list, for a directory without
-/// a run or sweep, and for a damaged record. Runs with the same id but different taps are an error, too.
+/// A run in several records counts as one job: the first one that has ended. If `by` has `name`, it is one job per
+/// record. The directory of the sweep is the common folder of the records. Throws Error for an empty list, for a
+/// directory without a run or sweep, and for a damaged record. Runs with the same id but different taps are an error,
+/// too.
 PooledSweep read_pooled(const std::vector<std::filesystem::path>& records, const std::vector<std::string>& by);
 
 /// Returns the innermost folder that contains all of these directories.

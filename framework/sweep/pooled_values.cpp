@@ -14,12 +14,12 @@
 namespace palpate {
 namespace {
 
-/// Classes of equal values. A mark stands for a value in a config or for a text in a sweep.
+/// Classes of equal values (union-find). A mark is a text that identifies a value in a config or a text in a sweep.
 class ValueClasses {
  public:
   /// Puts two marks of the same value into one class.
   void connect(const std::string& a, const std::string& b) { parents_[find(a)] = find(b); }
-  /// Returns the mark that stands for the class.
+  /// Returns the mark that represents the class.
   std::string find(const std::string& mark) {
     const auto [at, is_new] = parents_.emplace(mark, mark);
     return is_new || at->second == mark ? mark : at->second = find(at->second);
@@ -40,8 +40,8 @@ std::string identity_at(const Tree& config, const std::string& key, const std::v
   return part.canonical();
 }
 
-/// Returns a text for a value that no sweep has as text: the name of its group or the type of a plugin. The text of a
-/// scene is the types of its objects.
+/// Returns a text for a value that no sweep contains as a text: the name of its group or the type of a plugin. For a
+/// scene, the text lists the types of its objects.
 std::string words_at(const PooledSetting& setting, const std::string& key) {
   const Tree* found = setting.config.find_path(key);
   if (found == nullptr) return {};
@@ -58,7 +58,8 @@ std::string words_at(const PooledSetting& setting, const std::string& key) {
   return types.empty() ? "desk" : fmt::format("{}", fmt::join(types, "+"));
 }
 
-/// Names a class of values, unless it has a name: `words`, followed by the record if another class has that name.
+/// Gives a class of values the name `words`, unless the class has a name already. If another class has this name, the
+/// name of the record is appended.
 void name_class(const std::string& mark, const std::string& words, const std::string& record,
                 std::map<std::string, std::string>& names) {
   if (names.count(mark) > 0) return;
@@ -78,8 +79,8 @@ std::vector<std::string> pooled_values(const std::vector<PooledSetting>& setting
   const bool in_configs = std::any_of(settings.begin(), settings.end(),
                                       [&](const PooledSetting& one) { return one.config.find_path(key) != nullptr; });
   ValueClasses classes;
-  std::vector<std::pair<std::string, std::string>> marks;  // of each setting: mark and text
-  std::map<std::string, std::string> names;                // of each class, by its mark
+  std::vector<std::pair<std::string, std::string>> marks;  // mark and text of each setting
+  std::map<std::string, std::string> names;                // name of each class, by its mark
   for (const PooledSetting& one : settings) {
     const auto swept = one.swept.find(key);
     const bool is_swept = swept != one.swept.end();

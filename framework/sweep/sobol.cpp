@@ -76,7 +76,7 @@ std::vector<Axis> sobol_axes(const Tree& described, ValueCount& count) {
   }
   boost::random::sobol sequence(axes.size());
   std::vector<std::uint64_t> point(axes.size(),
-                                   0);  // the origin, which is the first point of the sequence, and which Boost omits
+                                   0);  // the origin: the first point of the sequence, which Boost omits
   for (std::int64_t i = 0; i < samples; ++i) {
     for (std::size_t k = 0; k < axes.size(); ++k) {
       const double share = static_cast<double>((point[k] ^ shift[k]) >> 11) * 0x1.0p-53;

@@ -30,7 +30,7 @@ FieldList<JobLine> make_job_list() {
   FieldList<JobLine> list;
   list.add("job", "number of the job, from 0", [](const JobLine& line) { return line.job.index; });
   list.add("id", "id of the job's run", [](const JobLine& line) { return line.job.id; });
-  // The keys are values here, because a dot in a field name would nest the field.
+  // The keys are stored as values, because a dot in a field name would nest the field.
   list.add_family("key_N", "swept key number N, from 0", [](Row& row, const JobLine& line) {
     for (std::size_t i = 0; i < line.keys.size(); ++i) {
       row.add(fmt::format("key_{}", i), line.keys[i]);
@@ -129,7 +129,7 @@ Sweep read_sweep(const fs::path& directory) {
                   "the file is damaged: put it back as it was");
     sweep.jobs.push_back(job);
   });
-  // The manifest is complete before the first job begins, so that an incomplete line is damage.
+  // The manifest is complete before the first job starts, so an incomplete line means damage.
   if (bytes != fs::file_size(file)) throw Error(file.string(), "ends in the middle of a line", "the file is damaged");
   if (sweep.jobs.empty()) throw Error(file.string(), "lists no jobs", "the file is damaged");
   if (sweep_id(read_run_config(directory), sweep) != id) {

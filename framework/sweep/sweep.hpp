@@ -18,7 +18,7 @@ namespace palpate {
 struct Job {
   int index = 0;
   std::string id;
-  std::vector<std::string> values;       ///< by swept key; "": the plugins of the job lack the option
+  std::vector<std::string> values;       ///< one value per swept key; "": the plugins of the job lack the option
   std::filesystem::path directory = {};  ///< only in a PooledSweep: see job_directory()
 };
 
@@ -69,13 +69,13 @@ inline constexpr const char* kThreads = "belief.engine.threads";
 /// called `summary.taps` for example, and left out if its value is that of the key.
 Row result_row(const Sweep& sweep, const Job& job, Row summary);
 
-/// Returns the summary field `name`, for example `taps` or `summary.taps`, in such a row; null if there is none. Both
-/// forms are accepted whether or not `taps` is swept.
+/// Returns the summary field `name`, for example `taps` or `summary.taps`, in a row of results.csv; null if there is
+/// none. Both forms are accepted, even if `taps` is not swept.
 const Scalar* result_of(const Row& row, const std::string& name);
 /// Removes the prefix: `summary.taps` and `taps` become `taps`.
 std::string field_name(const std::string& column);
 
-/// Returns the rows of results.csv for jobs that ended. The second form takes the summaries over, to save memory.
+/// Returns the rows of results.csv for jobs that ended. The second overload consumes the summaries, to save memory.
 std::vector<Row> sweep_results(const Sweep& sweep);
 std::vector<Row> sweep_results(const Sweep& sweep, std::vector<std::optional<Row>> summaries);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The summaries of a sweep's jobs after each of their taps, as if the budget had ended there. They are computed from
+// Summaries of a sweep's jobs after each of their taps, as if the budget had ended at that tap. They are computed from
 // the recorded taps on demand, and stored in the job's directory as summaries.jsonl. The file has one line per tap
 // except the last, each with the hash of the final summary. If the hash differs, the job ran again, and its rows are
 // computed again.
@@ -20,7 +20,7 @@ std::size_t taps_made(const Row& summary);
 
 class TapSummaries {
  public:
-  /// Receives the rows of a job: its summary after 1, 2, ... taps. The last row is the final summary.
+  /// A function that receives the rows of a job: its summaries after 1, 2, ... taps. The last row is the final summary.
   using Use = std::function<void(std::size_t job, const std::vector<Row>& rows)>;
 
   /// Reads the summaries of all jobs. Calls `use` for each job that is done after more than `fewest` taps and has valid

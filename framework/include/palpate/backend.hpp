@@ -46,13 +46,13 @@ class Backend {
   /// position is known. Called only for such a run; it must not change the taps.
   virtual std::vector<std::string> describe(const TapRequest& /*request*/) { return {}; }
 
-  /// A property of the robot that taps have revealed, one line each.
+  /// A property of the robot that taps have determined.
   struct Learnt {
-    std::string name;  ///< option whose value the config left open
+    std::string name;  ///< name of the option that left the value open
     std::string value;
   };
-  /// Returns what the taps of this process revealed about options that the config left open. The manifest stores it
-  /// when the run ends.
+  /// Returns the values that the config left open and that the taps of this process have determined. At the end of the
+  /// run, a line `note` of the record stores each of them.
   virtual std::vector<Learnt> learnt() const { return {}; }
 
   /// Returns the quantities of TapRequest::predicted on which taps depend, constant over the object's lifetime: none,

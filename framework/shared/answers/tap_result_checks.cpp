@@ -19,7 +19,7 @@ constexpr std::size_t kLongestLine = 200;
 /// Names of the outcomes in their order, without the last, `unknown`.
 constexpr const char* kOutcomes[] = {"contact", "no_contact", "unreachable", "timeout", "aborted"};
 
-/// Returns false for NaN.
+/// Returns whether a value is within bounds; false for NaN.
 bool is_within(double value, double least, double most) { return value >= least && value <= most; }
 
 }  // namespace

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Checks of tap results from outside: the program of the backend `process`, tell() in Python, and the table of the
-// backend `replay`.
+// Checks tap results that come from outside of palpate: from the program of the backend `process`, from tell() in
+// Python, and from the table of the backend `replay`.
 #pragma once
 
 #include <palpate/tap.hpp>
@@ -25,7 +25,7 @@ constexpr HeightBounds kAnyArm{-10.0, 10.0, "no arm is that long"};
 /// because the arm would have hit a higher object on its way.
 HeightBounds height_bounds(double desk, double overrun, double hover);
 
-/// Message about a value that no arm can have measured: value and bounds, and a remedy. Both are parts of one line.
+/// The two parts of a one-line message about a value that no arm can have measured.
 struct AnswerFault {
   std::string reason;
   std::string remedy;
@@ -41,7 +41,7 @@ void complete_contact(const TapLine& line, TapResult& answer);
 /// 86400 s, one day.
 std::optional<AnswerFault> find_fault(const TapResult& answer, const TapLine& line, const HeightBounds& bounds);
 
-/// Returns the outcome with this name. Returns nullopt for other names and for `unknown`, which stands for a missing
+/// Returns the outcome with this name. Returns nullopt for other names, and for `unknown`, which means that there is no
 /// answer.
 std::optional<Outcome> answered_outcome(const std::string& name);
 

@@ -19,8 +19,8 @@
 namespace palpate {
 namespace {
 
-/// Sockets of this process that lock arms. A forked child would hold the locks, too. So in the child their descriptors
-/// are replaced by the null device.
+/// Sockets of this process that lock arms. A forked child would hold the locks, too, so in the child the null device
+/// replaces their descriptors.
 struct Held {
   std::mutex guard;
   std::set<int> numbers;

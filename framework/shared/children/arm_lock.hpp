@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A lock per arm, which keeps two runs from moving the same arm. The lock of a record only keeps two processes from the
-// same run.
+// A lock per arm, which prevents two runs from moving the same arm. The lock of a record only prevents two processes
+// from executing the same run.
 #pragma once
 
 #include "children/child_process.hpp"
@@ -10,8 +10,8 @@
 namespace palpate {
 
 /// Holds the lock of an arm for its lifetime. The lock is an abstract socket name of the kernel (unix(7)). It is
-/// independent of environment, folder and user, cannot be removed, and ends with the process in any case. Forked
-/// children do not hold it. It does not exclude processes on other machines or in containers with their own network.
+/// independent of environment, folder and user, cannot be removed, and always ends with the process. Forked children do
+/// not hold it. It does not exclude processes on other machines or in containers with their own network.
 class ArmLock {
  public:
   /// Creates an object without a lock.

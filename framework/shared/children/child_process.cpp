@@ -20,7 +20,7 @@
 namespace palpate {
 namespace {
 
-/// Returns the texts as an array of the C library, which a null pointer ends.
+/// Returns pointers to the texts, followed by a null pointer, as functions of the C library expect.
 std::vector<char*> pointers(const std::vector<std::string>& texts) {
   std::vector<char*> out;
   for (const std::string& text : texts) out.push_back(const_cast<char*>(text.c_str()));
@@ -77,8 +77,8 @@ std::vector<std::string> own_environment() {
   return out;
 }
 
-/// Uses posix_spawn, because fork would copy a large process and the locks of other threads. execvp would run a file
-/// that is not a program with a shell.
+/// Uses posix_spawn, because fork would copy a large process and the locks of other threads. execvp is not used,
+/// because it would run a file that is not a program with a shell.
 pid_t spawn(const Program& program, const std::vector<int>& files) {
   const std::vector<char*> words = pointers(program.words);
   const std::vector<char*> environment = pointers(program.environment);
@@ -119,7 +119,7 @@ std::unique_ptr<ChildProcess> ChildProcess::fork(const std::function<int(const S
   std::unique_ptr<ChildProcess> out(new ChildProcess);
   std::optional<Pipe> pipe = open_pipe();
   if (!pipe) return nullptr;
-  std::fflush(nullptr);  // otherwise the child would write the buffers again
+  std::fflush(nullptr);  // otherwise the child would write the buffered output again
   const pid_t parent = ::getpid();
   out->pid_ = ::fork();
   if (out->pid_ == 0) {
@@ -155,7 +155,7 @@ ChildProcess::~ChildProcess() {
 void ChildProcess::listen(const std::vector<ChildProcess*>& children, double seconds) {
   std::vector<pollfd> pipes;
   for (const ChildProcess* child : children) pipes.push_back({child->pipe_.number(), POLLIN, 0});  // poll() ignores -1
-  // Rounded up, because a wait that is slightly too short would repeat many times.
+  // The time is rounded up, because a wait that is slightly too short would repeat many times.
   ::poll(pipes.data(), pipes.size(), static_cast<int>(std::ceil(1000.0 * std::clamp(seconds, 0.0, 3600.0))));
   for (std::size_t i = 0; i < pipes.size(); ++i) {
     if (pipes[i].revents != 0) children[i]->read_output();

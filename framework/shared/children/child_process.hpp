@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Child processes: programs, and work in a forked process because it may crash or hang, or because plugins do not
-// support threads.
+// Child processes: programs, and forked processes for work that may crash or hang or that cannot use threads.
 //
-// Framework and shipped plugins use these functions, which need only the C library. They throw nothing. If a system
-// call fails, they return an empty result with errno, so that callers can report the failed action. A child gets its
-// input at the start, and writes its output to one pipe, which closes at its end.
+// Framework and shipped plugins use these functions, which need only the C library. They do not throw. If a system call
+// fails, they return an empty result with errno, so that callers can report the failed action. A child gets its input
+// at the start, and writes its output to one pipe, which closes at its end.
 #pragma once
 
 #include <functional>
@@ -35,7 +34,7 @@ class Descriptor {
 
   explicit operator bool() const { return number_ >= 0; }
   int number() const { return number_; }
-  /// Closes the file. Keeps errno.
+  /// Closes the file. Does not change errno.
   void close();
 
  private:
@@ -64,17 +63,17 @@ std::vector<std::string> own_environment();
 struct Program {
   std::vector<std::string> words;                            ///< name and arguments, not interpreted by a shell
   std::string file{};                                        ///< executable; if empty, the name is searched on PATH
-  std::vector<std::string> environment = own_environment();  ///< the first value of a name counts
+  std::vector<std::string> environment = own_environment();  ///< if a name occurs twice, its first value is used
   /// Whether the program has its own process group. Then it gets no signals of the terminal, and has the default signal
   /// handling. Otherwise Ctrl-C ends it, and it ignores the signals that this process ignores, except SIGPIPE and
   /// SIGXFSZ.
   bool own_group = true;
-  std::string folder{};  ///< working folder; if empty, the present one
+  std::string folder{};  ///< working folder; if empty, the current one
 };
 
-/// Starts a program whose only open files are `files`, with the numbers 0, 1, 2, .... Each of `files` is above its new
-/// number. Returns the process id, for which the caller has to wait, or -1 with errno; ENOENT means no such program.
-/// For a dialogue with a program; otherwise use ChildProcess.
+/// Starts a program whose only open files are `files`, with the numbers 0, 1, 2, .... Each number in `files` must be
+/// larger than its new number. Returns the process id, for which the caller has to wait, or -1 with errno; ENOENT means
+/// no such program. Use this function for a dialogue with a program, otherwise ChildProcess.
 pid_t spawn(const Program& program, const std::vector<int>& files);
 
 /// Child process whose output is read until its end.
@@ -85,15 +84,15 @@ class ChildProcess {
 
   /// Forks a child that runs `work` and ends with its return value as the exit status, without destructors; `work` may
   /// call std::exit(), which runs them. An exception of `work` ends the child by SIGABRT. The child has its own process
-  /// group, because this process handles the signals of the terminal. It is killed when this process or the calling
-  /// thread ends. Returns null, with errno, if no process can be created.
+  /// group, because this process handles the signals of the terminal. The child is killed when this process or the
+  /// calling thread ends. Returns null, with errno, if no process can be created.
   static std::unique_ptr<ChildProcess> fork(const std::function<int(const Say& say)>& work);
 
   /// Starts `program` with `input` as its stdin. Its stdout and stderr are the child's output. The program survives
   /// this process. Returns null, with errno, as spawn() does.
   static std::unique_ptr<ChildProcess> start(const Program& program, std::string_view input = {});
 
-  /// Kills a child that has not ended, and reaps it.
+  /// Kills the child if it has not ended, and reaps it.
   ~ChildProcess();
   ChildProcess(const ChildProcess&) = delete;
   ChildProcess& operator=(const ChildProcess&) = delete;
@@ -106,9 +105,9 @@ class ChildProcess {
   bool wait(double seconds = std::numeric_limits<double>::infinity());
 
   bool ended() const { return pid_ < 0; }
-  /// All output so far.
+  /// Returns all output so far.
   const std::string& said() const { return output_; }
-  /// Status of waitpid(); -1 if another caller has reaped the child.
+  /// Returns the status of waitpid(); -1 if another caller has reaped the child.
   int status() const { return status_; }
 
   /// Sends a signal to the child, unless it has ended.
@@ -122,7 +121,7 @@ class ChildProcess {
   void reap();
 
   pid_t pid_ = -1;
-  Descriptor pipe_;  ///< none after the end
+  Descriptor pipe_;  ///< closed after the end
   int status_ = 0;
   std::string output_;
 };

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Names of instruction sets, their selection by the environment, and the version of a loop for the selected set.
+// Names of instruction sets, the selection of a set by an environment variable, and the version of a loop for the
+// selected set.
 #pragma once
 
 #include <palpate/instructions.hpp>
@@ -16,8 +17,8 @@ const char* name_of(Instructions set);
 std::vector<Instructions> instruction_sets();
 
 /// Selects the set that the environment variable PALPATE_INSTRUCTIONS names, or the widest set if the variable is unset
-/// or empty. Loops give the same bytes with AVX2, AVX-512 and NEON. `baseline` gives other last digits, because it has
-/// no fused multiplication and addition. Throws Error if the processor has no set with this name.
+/// or empty. Loops give the same bytes with AVX2, AVX-512 and NEON. With `baseline`, the last digits differ, because it
+/// has no fused multiply-add. Throws Error if the processor has no set with this name.
 Instructions choose_instructions();
 
 /// Returns the version of a function for the set in use. `versions` are in the order of Instructions, null if not

@@ -22,7 +22,7 @@ std::size_t size_of(const std::string& type) {
 
 struct Property {
   std::size_t count_size = 0;  ///< bytes of a list's number of items; 0 if not a list
-  std::size_t size = 0;        ///< bytes of an item
+  std::size_t size = 0;        ///< bytes per item
 };
 
 struct Element {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Simplification of PLY files for readers of a part of the format.
+// Simplifies PLY files for readers that support only a part of the format.
 #pragma once
 
 #include "reading/binary_number.hpp"

@@ -2,8 +2,8 @@
 // Reads files from outside: records, configs, meshes, point clouds, tables and files of /proc. Opens regular files
 // only, reads at most a given number of bytes, and follows no link in a record.
 //
-// Framework and shipped plugins use these functions. No other code of theirs opens a file for reading or lists a folder
-// (tests/habits.sh).
+// Framework and shipped plugins use these functions. They open no file for reading, and list no folder, in any other
+// way (tests/habits.sh).
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,7 @@
 
 namespace palpate {
 
-/// Largest sizes in bytes: for each kind of content, a multiple of the largest size that palpate writes or documents.
+/// Limits of file sizes in bytes. Each limit is a multiple of the largest size that palpate writes or documents.
 constexpr std::uintmax_t kMostConfigBytes = std::uintmax_t{1} << 20;     ///< a config or a file of a group
 constexpr std::uintmax_t kMostManifestBytes = std::uintmax_t{64} << 20;  ///< a line of a record that contains lists
 constexpr std::uintmax_t kMostLogBytes = std::uintmax_t{512} << 20;      ///< all lines of a record or of a sweep
@@ -29,7 +29,7 @@ constexpr std::uintmax_t kMostSystemBytes = std::uintmax_t{16} << 20;  ///< a fi
 /// Source of a file's name.
 enum class Origin {
   user,   ///< a command line, a config of the user, or the installation: links are followed
-  record  ///< a record, which may be from a stranger: links, also to the folder of a job, are not followed
+  record  ///< a record, which may come from another user: links, also to the folder of a job, are not followed
 };
 
 /// Result of reading a file.
@@ -54,8 +54,8 @@ struct Reading {
 /// Reads a file of at most `most_bytes`. Never blocks on a pipe and opens no device. Throws only std::bad_alloc.
 Reading read_bounded(const std::filesystem::path& file, std::uintmax_t most_bytes, Origin origin);
 
-/// Read the first, or the last, `bytes` of a file of at most kMostLogBytes, or all of a shorter file. Otherwise like
-/// read_bounded().
+/// Read the first, or the last, `bytes` of a file of at most kMostLogBytes; a shorter file is read as a whole.
+/// Otherwise they behave like read_bounded().
 Reading read_begin_bounded(const std::filesystem::path& file, std::uintmax_t bytes, Origin origin);
 Reading read_end_bounded(const std::filesystem::path& file, std::uintmax_t bytes, Origin origin);
 
@@ -76,8 +76,8 @@ std::vector<std::filesystem::path> list_folder(const std::filesystem::path& fold
 std::vector<std::filesystem::path> list_folder(const std::filesystem::path& folder);
 
 /// Returns `text` with \xNN or \uNNNN in place of control characters (C0, DEL, C1), marks that change the direction of
-/// writing, and bytes that are not UTF-8. So a stranger's text cannot move the cursor of a terminal or hide text. Line
-/// ends and tabs stay.
+/// writing, and bytes that are not UTF-8. So a text from another user cannot move the cursor of a terminal or hide
+/// text. Line ends and tabs are kept.
 std::string printable(std::string_view text);
 
 /// Returns `text` as one line, cut between characters after about `most` bytes. Blanks replace line ends, tabs and the

@@ -18,14 +18,14 @@ namespace palpate {
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
-/// Factor of the bound of a pivot's rounding error. The pivot d^2 = diagonal - l.l has an error of up to about (n + 1)
+/// Factor in the bound of a pivot's rounding error. The pivot d^2 = diagonal - l.l has an error of up to about (n + 1)
 /// eps diagonal (Higham, Accuracy and Stability of Numerical Algorithms, 2002, section 10.1). A smaller pivot has no
 /// correct digit.
 constexpr double kPivotGuard = 1.0;
 
 /// First and last amount of jitter, in units of n eps times the largest diagonal entry. The first is larger than
-/// rounding errors. The last is negligible in results, 100 n eps = 4e-13 for 17 rows. A matrix that is not positive
-/// definite with it is not so due to rounding.
+/// rounding errors. The last is negligible in results, 100 n eps = 4e-13 for 17 rows. If a matrix is not positive
+/// definite even with the last amount, rounding is not the cause.
 constexpr double kFirstJitter = 10.0;
 constexpr double kLastJitter = 100.0;
 
@@ -48,10 +48,10 @@ std::vector<int> independent_rows(const Eigen::MatrixXd& covariance);
 /// Numerical diagnostics of the factorisations of one model, for the record. If a model is factorised again at every
 /// tap, every factorisation counts.
 struct FactorReport {
-  double jitter = 0.0;     ///< present variance on the diagonal beside the noise, in the unit of the matrix
+  double jitter = 0.0;     ///< current variance added to the diagonal besides the noise, in the unit of the matrix
   int raised = 0;          ///< number of increases of the jitter
   int pivoted = 0;         ///< number of factorisations of independent rows, because no jitter helped
-  int redundant_taps = 0;  ///< rows that are left out at present
+  int redundant_taps = 0;  ///< number of rows that are currently left out
 
   /// Adds the counts of another model of the same rows. Jitter and redundant taps become the maximum of both.
   void add(const FactorReport& other) {
