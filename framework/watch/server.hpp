@@ -7,9 +7,8 @@
 // occupy one of the six connections that a browser has per server, and would fill up while a page draws slowly.
 //
 // The server answers with an empty 403 to requests without the token. It does the same for requests that address it by
-// a foreign name, such as requests of a website whose name resolves to this machine. Unknown places get 404. Methods
-// other than GET
-// 405. Headers forbid caching, frames and referrers.
+// a foreign name, such as requests of a website whose name resolves to this machine. Unknown places get the status
+// 404, and methods other than GET the status 405. Headers forbid caching, frames and referrers.
 //
 // One thread suffices: replaying a tap takes milliseconds, and the other cores are for the run.
 #pragma once
