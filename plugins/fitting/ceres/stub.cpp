@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Stub of the fitting for builds without Ceres.
+// The fitting in builds without Ceres. It only reports that Ceres is missing.
 #include "stub.hpp"
 
 #include "fitting/ceres/options.hpp"
