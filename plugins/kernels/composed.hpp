@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Common part of kernels that combine other kernels.
+// Common part of the kernels that combine other kernels.
 #pragma once
 
 #include <palpate/kernel.hpp>
@@ -88,8 +88,8 @@ class Composed : public Kernel {
   }
 
  protected:
-  /// Combines all parts except the first with `out`, which contains the first. fill(part, j, own) computes column j of
-  /// a part.
+  /// Combines all parts except the first with `out`, which already has the values of the first. `fill(part, j, own)`
+  /// computes column j of a part.
   template <class Fill>
   void join_others(MatrixOut out, const Fill& fill) const {
     Eigen::VectorXd own(out.rows());
