@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Reader for heights on a grid: a CSV table, a NumPy array or an image.
+// Reader for heights on a grid, from a CSV table, a NumPy array or an image.
 #pragma once
 
 #include <Eigen/Core>

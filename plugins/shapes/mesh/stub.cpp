@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Stub of the shape for builds without Embree or assimp.
+// The shape in builds without Embree or assimp. It only reports what this build lacks.
 #include "stub.hpp"
 
 #include "shapes/mesh/options.hpp"
