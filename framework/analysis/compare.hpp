@@ -26,13 +26,14 @@ enum class CompareExtent { means, intervals, pairs };
 
 /// Arguments of compare().
 struct CompareQuery {
-  std::vector<std::string> by;       ///< swept keys; jobs with equal values of these keys form a group
-  std::string metric;                ///< column of results.csv
-  const Condition* where = nullptr;  ///< condition on columns of results.csv; jobs that do not satisfy it are left out;
-                                     ///< null for no condition
-  std::optional<std::string> baseline;  ///< name of the group that all others are compared with: "weighted, rbf". If
-                                        ///< the scene is one of the keys, "weighted" names that group of each scene.
-  bool ratios = false;                  ///< whether to compute the ratio of the means for each pair
+  std::vector<std::string> by;  ///< swept keys; jobs with equal values of these keys form a group
+  std::string metric;           ///< column of results.csv
+  /// condition on columns of results.csv, or null; jobs that do not satisfy it are left out
+  const Condition* where = nullptr;
+  /// Name of the group with which all others are compared: "weighted, rbf". If the scene is one of the keys, "weighted"
+  /// names the group `weighted` of each scene.
+  std::optional<std::string> baseline;
+  bool ratios = false;  ///< whether to compute the ratio of the means for each pair
   CompareExtent extent = CompareExtent::pairs;
 };
 
@@ -44,20 +45,20 @@ struct ComparedGroup {
   int never = 0;
   MeanEstimate mean;  ///< mean over the jobs with a value; its clusters are seeds, or jobs if jobs are the units
   double median = 0.0;
-  double low_10 = 0.0;  ///< 10 % and 90 % quantiles over the jobs
+  double low_10 = 0.0;  ///< `low_10` and `high_90` are the 10 % and 90 % quantiles over the jobs
   double high_90 = 0.0;
 };
 
 /// Differences `first` minus `second`, over the pairs of jobs in which both have a value.
 struct ComparedPair {
-  std::size_t first = 0;  ///< indices in Comparison::groups
+  std::size_t first = 0;  ///< `first` and `second` are indices in Comparison::groups
   std::size_t second = 0;
   /// Pairs of jobs without two values, by status. A pair counts as left out if the condition keeps one of its jobs.
   StatusCounts lost;
-  MeanEstimate difference;             ///< mean difference; it counts pairs of jobs, and its clusters are seeds
-  std::optional<RatioEstimate> ratio;  ///< mean of the first divided by mean of the second; nullopt unless requested
-                                       ///< and defined
-  SignedRank test;                     ///< test of the means per unit (JobUnits)
+  MeanEstimate difference;  ///< mean difference; it counts pairs of jobs, and its clusters are seeds
+  /// Mean of the first divided by mean of the second; nullopt if not requested or not defined.
+  std::optional<RatioEstimate> ratio;
+  SignedRank test;  ///< test of the means per unit (JobUnits)
   /// p of the test, adjusted for all pairs of this comparison; nullopt for a single pair
   std::optional<double> p_holm;
 };
@@ -78,8 +79,8 @@ struct Comparison {
   /// run.
   bool has_copies() const;
 
-  std::size_t compared = 0;  ///< number of groups with jobs; groups that the condition leaves out entirely have no
-                             ///< pairs
+  /// Number of groups with jobs. A group without jobs, because the condition leaves them all out, has no pairs.
+  std::size_t compared = 0;
   bool one_baseline = false;
   bool scenes_apart = false;  ///< whether the scene is one of the keys; groups of different scenes form no pair
   bool ratios = false;        ///< whether ratios were requested
@@ -92,10 +93,10 @@ struct Comparison {
 /// are compared. The default baseline is the first group.
 inline constexpr std::size_t kMostGroupsInPairs = 8;
 
-/// Compares the jobs of `sweep`, whose rows of results.csv are `results`. Throws Error of the command line for each of
-/// these: keys that are not swept, an unusable metric, an unknown baseline, and a condition with unknown columns or
-/// without matching jobs. A metric is unusable if it does not exist, is not a result, holds no numbers, or has no value
-/// in any job.
+/// Compares the jobs of `sweep`, whose rows of results.csv are `results`. Throws Error of the command line for keys
+/// that are not swept, an unusable metric, and an unknown baseline. Also throws it for a condition with unknown columns
+/// or without matching jobs. A metric is unusable if it does not exist, is not a result, holds no numbers, or has no
+/// value in any job.
 Comparison compare(const Sweep& sweep, const std::vector<Row>& results, const CompareQuery& query);
 
 }  // namespace palpate

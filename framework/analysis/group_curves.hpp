@@ -35,8 +35,9 @@ struct CurvesQuery {
   std::string metric;                  ///< column of results.csv
   std::string against = kAgainstTaps;  ///< kAgainstTaps or kAgainstTime
   const Condition* where = nullptr;    ///< condition on columns of results.csv; other jobs are left out; null for none
-  bool students = false;  ///< whether all intervals are Student's t, as on pages, which is fast; else as in
-                          ///< mean_of_sample()
+  /// Whether all intervals are Student's t, which is fast and used on pages. Otherwise they are those of
+  /// mean_of_sample().
+  bool students = false;
 };
 
 struct CurvePoint {

@@ -16,8 +16,8 @@ struct SignedRank {
   std::size_t higher = 0;  ///< number of pairs whose first value is larger
   std::size_t equal = 0;   ///< number of pairs with equal values, which ranks and p ignore
   std::size_t lower = 0;
-  double rank_sum_higher = 0.0;  ///< sum of the ranks of the absolute differences of the higher pairs; ties share their
-                                 ///< mean rank
+  /// Sum of the ranks of the absolute differences, over the pairs in `higher`. Ties have their mean rank.
+  double rank_sum_higher = 0.0;
   double rank_sum_lower = 0.0;
   std::optional<double> p;  ///< two-sided p; 1 if all pairs are equal, nullopt if there are no pairs
   bool exact = true;

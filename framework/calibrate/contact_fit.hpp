@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Fit of an arm's errors to contacts with a known scene, by maximum likelihood.
 //
-// A true contact at the requested position p has the error e = h(p + q) + b + d t + noise, where q is normal with equal
+// A true contact at the requested position p has the error e = h(p + q) + b + d t + noise. Here q is normal with equal
 // deviations along x and y. A false contact is anywhere on the path of the tool. Expectation maximisation (Dempster,
 // Laird and Rubin 1977) finds the offset b, the drift d, the noise and the share of false contacts. It runs for each
 // lateral deviation on a grid. The fit takes the most likely lateral deviation. Its interval is that of the profile
@@ -29,13 +29,13 @@ struct KnownContact {
 };
 
 struct ContactFit {
-  Estimated offset;                  ///< metres; offset at the mean time of the contacts if there is a drift
-  std::optional<Estimated> drift;    ///< metres per second; nullopt if not significantly different from 0
-  Estimated noise;                   ///< standard deviation of a height, metres
-  std::optional<Estimated> lateral;  ///< standard deviation of the position along x and y, metres; nullopt if these
-                                     ///< taps do not determine it
-  Estimated false_share;             ///< share of false contacts among all contacts
-  double mean_elapsed = 0.0;         ///< mean time of the contacts, seconds
+  Estimated offset;                ///< metres; offset at the mean time of the contacts if there is a drift
+  std::optional<Estimated> drift;  ///< metres per second; nullopt if not significantly different from 0
+  Estimated noise;                 ///< standard deviation of a height, metres
+  /// Standard deviation of the position along x and y, metres; nullopt if the taps do not determine it.
+  std::optional<Estimated> lateral;
+  Estimated false_share;      ///< share of false contacts among all contacts
+  double mean_elapsed = 0.0;  ///< mean time of the contacts, seconds
 };
 
 /// Fits at least 3 contacts. False contacts are distributed uniformly over `range` metres of height.

@@ -15,7 +15,7 @@ using Ring = std::vector<Eigen::Vector3d>;
 
 /// Returns sections of the objects of a scene by horizontal and vertical planes, which are `apart` metres from each
 /// other. Points are in metres, in the frame of the scene. The sections are limited to a box
-/// on the desk over the middle of the area; the box is 0.92 times as wide and 0.76 times as high as the longer side of
+/// on the desk over the middle of the area. The box is 0.92 times as wide and 0.76 times as high as the longer side of
 /// the area. A section has points on the surface, where the surface crosses the lines of a
 /// grid with spacing `side` in the plane. The points are joined by straight lines. Points within `side` / 10 of the
 /// straight line between the points that remain are removed. The sections may miss parts of an object that are thinner

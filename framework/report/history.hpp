@@ -22,7 +22,7 @@ struct TapMark {
   enum class Kind { on, off, failed };
   int tap = 1;
   Kind kind = Kind::failed;  ///< follows from the label that the contact has at that moment
-  double x = 0.0;            ///< metres, as is `y`
+  double x = 0.0;            ///< position of the tap (x, y), metres
   double y = 0.0;
   double height = 0.0;  ///< metres; the height of the desk for a tap without a contact
 };

@@ -23,7 +23,7 @@ struct PartsOptions : Options {
 
 /// A kernel of several parts. Its parameters are named kernels.0.length_scale, in the order of the parts. `Join`
 /// defines the combination:
-///     static constexpr double kNothing;          result without parts
+///     static constexpr double kNothing;          value of a combination of no parts
 ///     static void apply(whole, part);            combines the covariances of a part with those of the previous parts
 ///     static void join_slopes(before, own, whole, part);   combines derivatives, one matrix per parameter
 /// In join_slopes(), `before` belongs to the previous parts and `own` to the part. It is called before apply().
