@@ -21,8 +21,8 @@ namespace fs = std::filesystem;
 constexpr double kPointsPerInch = 72.0;
 constexpr double kSvgDpi = 96.0;
 
-/// Returns the first line that has words. gnuplot's messages begin with lines that only repeat the script and point to
-/// a position in it.
+/// Returns the first line that has words. gnuplot's messages begin with lines of blanks and a caret, which points to a
+/// position in the script.
 std::string first_words(const std::string& text) {
   std::istringstream lines(text);
   std::string line;

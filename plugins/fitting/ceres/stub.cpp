@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The fitting in builds without Ceres. It only reports that Ceres is missing.
+// Stub of the fitting for builds without Ceres. Creating it throws an error that names the missing packages.
 #include "stub.hpp"
 
 #include "fitting/ceres/options.hpp"

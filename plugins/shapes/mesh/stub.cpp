@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The shape in builds without Embree or assimp. It only reports what this build lacks.
+// Stub of the shape for builds without Embree or assimp. Creating it throws an error that names the missing packages.
 #include "stub.hpp"
 
 #include "shapes/mesh/options.hpp"
