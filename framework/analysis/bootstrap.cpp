@@ -11,12 +11,12 @@
 namespace palpate {
 namespace {
 
-/// Influence of a cluster on the mean, and the cluster's size divided by the average size.
+/// Influence of a cluster on the mean, and size of the cluster divided by the average size.
 using ClusterInfluence = std::pair<double, double>;
 
 /// The influences of all clusters, divided by the largest one and sorted. If the negated influences sort before them,
-/// `influences` has these and `mirrored` is set: neither the order of the clusters nor the sign of the values changes
-/// the draws.
+/// `influences` has the negated ones and `mirrored` is set. So neither the order of the clusters nor the sign of the
+/// values changes the draws.
 struct ScaledInfluences {
   std::vector<ClusterInfluence> influences;
   double unit = 0.0;
@@ -50,16 +50,16 @@ ScaledInfluences scale_influences(const Clusters& clusters, double mean) {
   return out;
 }
 
-/// Returns the number of resamples for this number of clusters. The interval of a small sample ends far out in the
-/// distribution of its means, where draws are few, so it gets more resamples. Very large samples get fewer: 2000
-/// determine the ends within 3 % of half the interval.
+/// Returns the number of resamples for this number of clusters. A small sample gets more resamples, because the ends of
+/// its interval are far out in the distribution of its means, where draws are few. A very large sample gets fewer: 2000
+/// resamples determine the ends within 3 % of half the interval.
 std::size_t resamples_of(std::size_t count) {
   constexpr std::size_t kMostDraws = 100'000'000;
   if (count > kMostDraws / kResamples) return std::max(kMostDraws / count, kResamples / 5);
   return std::clamp(10'000'000 / count, kResamples, 10 * kResamples);
 }
 
-/// Calls `take` with the index of each of `count` draws with replacement.
+/// Draws `count` indices with replacement and calls `take` with each.
 template <class Take>
 void draw(Random& random, std::uint64_t count, const Take& take) {
   // Each index takes 32 bits, two per random number. The probability of an index is off by at most count / 2^32.
@@ -74,8 +74,8 @@ void draw(Random& random, std::uint64_t count, const Take& take) {
 
 double normal_share(double z) { return 0.5 * std::erfc(-z / std::sqrt(2.0)); }
 
-/// Returns how far the median of the resampled values is from `centre`, in standard deviations (the bias correction of
-/// BCa). Values within `rounding` of the centre count as half below.
+/// Returns the bias correction of BCa: the distance of the median of the resampled values from `centre`, in standard
+/// deviations. Half of the values within `rounding` of the centre count as below it.
 double bias_of(const std::vector<double>& values, double centre, double rounding) {
   const auto below = std::count_if(values.begin(), values.end(), [&](double one) { return one < centre - rounding; });
   const auto above = std::count_if(values.begin(), values.end(), [&](double one) { return one > centre + rounding; });
@@ -106,7 +106,7 @@ MeanInterval interval_of(std::vector<double>& values, double centre, double roun
   const auto end = [&](double place) {
     const double shifted = bias + place;
     const double share = normal_share(bias + shifted / (1.0 - acceleration * shifted));
-    // Finds the two values around the quantile: sorting all values would take longer than all draws.
+    // Finds only the two values around the quantile, because sorting all values would take longer than all draws.
     const auto below = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
     std::nth_element(values.begin(), values.begin() + below, values.end());
     if (below + 1 < static_cast<std::ptrdiff_t>(values.size()))
@@ -187,7 +187,7 @@ std::optional<RatioEstimate> bootstrap_ratio(const std::vector<double>& above, c
       a += pairs[i].first;
       b += pairs[i].second;
     });
-    // A resample without a positive value below, also 0 / 0, counts as an infinite ratio.
+    // A resample without a positive value in `below` counts as an infinite ratio, even if it is 0 / 0.
     ratio = b > 0.0 ? a / b : std::numeric_limits<double>::infinity();
   }
   out.interval = interval_of(ratios, out.ratio, kRounding * out.ratio, influences);

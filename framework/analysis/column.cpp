@@ -18,7 +18,7 @@ namespace palpate {
 std::string Column::words() const {
   const RecordField* field = find_summary_field(name);
   if (field == nullptr || field->label.empty()) return name;
-  // Labels of lengths stand below a heading on pages: "over the scene".
+  // The labels of lengths continue a heading of the page, such as "over the scene".
   if (unit != Unit::metre) return field->label;
   return (name.find("rmse") != std::string::npos ? "RMSE " : "distance ") + field->label;
 }
@@ -77,7 +77,7 @@ JobValue value_of_job(const Row* row, const std::string& column, const std::stri
 
 std::string StatusCounts::words(const std::vector<ValueStatus>& statuses, const std::string& behind) const {
   constexpr const char* kWords[] = {"with one job excluded by --where", "without a partner", "unfinished", "failed",
-                                    "without a value"};  // by ValueStatus
+                                    "without a value"};  // texts in the order of ValueStatus
   std::vector<std::string> out;
   for (const ValueStatus status : statuses) {
     if (of(status) > 0)

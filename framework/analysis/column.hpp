@@ -36,13 +36,14 @@ struct CellNumber {
 };
 CellNumber number_of(const Scalar* cell);
 
-/// Returns a cell as conditions read it: as in a config, with its unit; "" for a missing or infinite value.
+/// Returns a cell as conditions read it: in the format of a config, with its unit. Returns "" for a missing or infinite
+/// value.
 std::string written_in(const std::string& column, const Scalar& cell);
 
-/// Status of a job's value in a comparison. A pair of jobs has the status of its two jobs that comes first in this
-/// list.
+/// Status of a job's value in a comparison. A pair of jobs has the status of one of its two jobs, namely the one that
+/// comes first in this list.
 enum class ValueStatus {
-  left_out,  ///< by a condition; a condition on a value that the job lacks fails
+  left_out,  ///< A condition leaves the job out. A condition on a value that the job lacks is false.
   without_partner,
   unfinished,
   failed,
@@ -52,21 +53,22 @@ enum class ValueStatus {
 
 struct JobValue {
   ValueStatus status = ValueStatus::counted;
-  double value = 0.0;  ///< valid if `status` is `counted`
+  double value = 0.0;  ///< the value, if `status` is `counted`
 };
 
-/// Returns the value of a job by its row, which is null for a job that has not ended. Throws Error of the command line,
-/// naming `option`, if the column holds text.
+/// Returns the value of a job from its row. The row is null for a job that has not ended. Throws Error of the command
+/// line, naming `option`, if the column holds text.
 JobValue value_of_job(const Row* row, const std::string& column, const std::string& option);
 
-/// Numbers of jobs, or of pairs, by status. Jobs that a condition leaves out count as left out, however they ended.
+/// Numbers of jobs, or of pairs, by status. A job that a condition leaves out counts as left out, whether it failed or
+/// not.
 class StatusCounts {
  public:
   void add(ValueStatus status) { ++counts_.at(static_cast<std::size_t>(status)); }
   int of(ValueStatus status) const { return counts_.at(static_cast<std::size_t>(status)); }
   int all() const { return std::accumulate(counts_.begin(), counts_.end(), 0); }
   bool all_are(ValueStatus status) const { return of(status) == all(); }
-  /// Returns "2 failed, 1 unfinished": the numbers of `statuses` that are not 0, with `behind` after each number.
+  /// Returns "2 failed, 1 unfinished": those numbers of `statuses` that are not 0. `behind` follows each number.
   std::string words(const std::vector<ValueStatus>& statuses, const std::string& behind = "") const;
 
  private:

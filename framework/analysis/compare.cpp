@@ -28,13 +28,14 @@ struct JobOutcome {
   std::string unit;
 };
 
-/// The jobs of a group by the values of the pairing keys, sorted: the order of the jobs changes nothing.
+/// The jobs of a group, sorted by their values of the pairing keys. The order of jobs in the sweep therefore has no
+/// effect.
 using JobOutcomes = std::map<Values, JobOutcome>;
 
 struct Collected {
   Values values;
   JobOutcomes outcomes;
-  int never = 0;  ///< counted jobs that never reached the goal of the occasion
+  int never = 0;  ///< number of counted jobs that never reached the goal of the occasion
 };
 
 bool contains(const Values& names, const std::string& name) {
@@ -50,9 +51,10 @@ Values others(const Values& names, const Values& without) {
   return out;
 }
 
-/// Sorts the groups by the first key, then the second; values in the order of the sweep.
+/// Sorts the groups by their values of the first key, then of the second, and so on. Values are in the order of the
+/// sweep.
 std::vector<JobGroup> by_keys(std::vector<JobGroup> groups) {
-  std::vector<std::map<std::string, std::size_t>> ranks;  // ranks of the values of each key
+  std::vector<std::map<std::string, std::size_t>> ranks;  // ranks of the values, one map per key
   for (const JobGroup& group : groups) {
     ranks.resize(group.values.size());
     for (std::size_t i = 0; i < ranks.size(); ++i) ranks[i].emplace(group.values[i], ranks[i].size());
@@ -85,7 +87,8 @@ std::vector<Collected> collect(const Sweep& sweep, const std::vector<Row>& resul
       if (outcome.value.status == ValueStatus::counted && row->flag(kReached) == false) ++groups.back().never;
       Values pairing;
       for (const std::string& key : paired) pairing.push_back(value_of(sweep, *job, key));
-      // A list may hold the same job several times: the first copy pairs with the first of the other group, and so on.
+      // A list may contain the same job several times. The first copy then pairs with the first copy in the other
+      // group, and so on.
       pairing.emplace_back();
       JobOutcomes& outcomes = groups.back().outcomes;
       for (int repeat = 1; !outcomes.emplace(pairing, outcome).second; ++repeat)
@@ -137,7 +140,7 @@ ComparedPair compare_pair(const std::vector<Collected>& groups, std::size_t firs
   const auto add = [&](const JobOutcome& one, const JobOutcome& other) {
     const ValueStatus status = std::min(one.value.status, other.value.status);
     if (status == ValueStatus::counted) {
-      // Both jobs have the same seed, or are copies of one pair.
+      // Pairs with the same seed have the same unit, and so have copies of one pair of runs.
       const std::string unit = one.unit + "-" + other.unit;
       of_a.add(unit, one.value.value);
       of_b.add(unit, other.value.value);
@@ -177,14 +180,14 @@ void adjust(std::vector<ComparedPair>& pairs) {
 /// Returns a name without blanks, since "weighted,rbf" also names the group "weighted, rbf".
 std::string without_blanks(const std::string& name) { return boost::algorithm::erase_all_copy(name, " "); }
 
-/// Groups that are compared with each other: the groups of one scene, since results on different scenes are not
-/// comparable. If all keys belong to the scene, it is all groups.
+/// Groups that are compared with each other. These are the groups of one scene, because results on different scenes are
+/// not comparable. If all keys belong to the scene, the block has all groups.
 struct ComparedBlock {
   std::vector<std::size_t> groups;
   std::size_t baseline = 0;
 };
 
-/// Returns for each key whether it belongs to the scene; false for all keys if all of them do.
+/// Returns for each key whether it belongs to the scene. If all keys do, returns false for all.
 std::vector<bool> scene_places(const Sweep& sweep, const Values& by) {
   const Values scenes = scene_keys(sweep);
   std::vector<bool> out;
@@ -193,7 +196,7 @@ std::vector<bool> scene_places(const Sweep& sweep, const Values& by) {
   return out;
 }
 
-/// Returns the values of a group whose places have this flag, joined by commas.
+/// Returns those values of a group whose flag in `places` equals `wanted`, joined by commas.
 std::string values_at(const Values& values, const std::vector<bool>& places, bool wanted) {
   Values out;
   for (std::size_t i = 0; i < values.size(); ++i) {
@@ -202,8 +205,8 @@ std::string values_at(const Values& values, const std::vector<bool>& places, boo
   return fmt::format("{}", fmt::join(out, ", "));
 }
 
-/// Returns the blocks of the groups in `kept`, indices of the groups with jobs. The baseline of a block is its first
-/// group.
+/// Returns the blocks of the groups `kept`. These are indices of the groups with jobs. The baseline of a block is its
+/// first group.
 std::vector<ComparedBlock> blocks_of(const std::vector<ComparedGroup>& groups, const std::vector<std::size_t>& kept,
                                      const std::vector<bool>& scenes) {
   std::vector<ComparedBlock> out;
@@ -216,8 +219,8 @@ std::vector<ComparedBlock> blocks_of(const std::vector<ComparedGroup>& groups, c
   return out;
 }
 
-/// Sets the baselines to the group that --baseline names, or to the group of each scene with these other values.
-/// Removes blocks without such a group.
+/// Sets the baselines to the group that --baseline names. If --baseline has only the values that do not belong to the
+/// scene, each scene has such a group as its baseline. Removes blocks that have no such group.
 void choose_baselines(std::vector<ComparedBlock>& blocks, const std::vector<ComparedGroup>& groups,
                       const std::vector<bool>& scenes, const std::string& name) {
   const std::string wanted = without_blanks(name);
@@ -245,7 +248,7 @@ void choose_baselines(std::vector<ComparedBlock>& blocks, const std::vector<Comp
 
 /// Adds to `apart` the indices of pairing keys for which the two groups have no value in common.
 void find_apart(const JobOutcomes& a, const JobOutcomes& b, std::set<std::size_t>& apart) {
-  const std::size_t places = a.begin()->first.size() - 1;  // without the last one, which separates equal jobs
+  const std::size_t places = a.begin()->first.size() - 1;  // The last value only separates equal jobs.
   for (std::size_t place = 0; place < places; ++place) {
     std::set<std::string> values;
     for (const auto& [pairing, outcome] : a) values.insert(pairing[place]);
@@ -254,7 +257,7 @@ void find_apart(const JobOutcomes& a, const JobOutcomes& b, std::set<std::size_t
   }
 }
 
-/// Adds the pairs of each block: all pairs, or with many groups the pairs with the baseline.
+/// Adds the pairs of each block: all pairs, or only the pairs with the baseline if there are many groups.
 void add_pairs(const std::vector<ComparedBlock>& blocks, const std::vector<Collected>& groups,
                const CompareQuery& query, Comparison& out) {
   for (const ComparedBlock& block : blocks) {
@@ -270,7 +273,7 @@ void add_pairs(const std::vector<ComparedBlock>& blocks, const std::vector<Colle
   adjust(out.pairs);
 }
 
-/// Throws Error with the reason if no group has a value.
+/// Throws Error if no group has a value; the error has the reason.
 void check_values(const Comparison& made, const Sweep& sweep) {
   int without_value = 0;
   for (const ComparedGroup& group : made.groups) {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Comparison of groups of a sweep's jobs: mean and spread per group, and paired differences between groups. A pair is
-// two jobs that are equal in every other swept key. Seeds are the units of statistics: all jobs of a seed are resampled
-// together, and means per seed are ranked. For output see analysis/compare_report.hpp.
+// Comparison of groups of a sweep's jobs: mean and spread per group, and paired differences between groups. A pair
+// consists of two jobs that have equal values of every other swept key. Seeds are the units of statistics. The
+// bootstrap resamples all jobs of a seed together, and tests rank the means per seed. The output is in
+// analysis/compare_report.hpp.
 #pragma once
 
 #include "analysis/bootstrap.hpp"
@@ -19,77 +20,83 @@
 
 namespace palpate {
 
-/// Extent of a comparison: means of the groups, means with intervals, or both with all pairs. Intervals and pairs take
-/// most of the time.
+/// Extent of a comparison: means of the groups, means with intervals, or means with intervals and all pairs. Intervals
+/// and pairs take most of the time.
 enum class CompareExtent { means, intervals, pairs };
 
 /// Arguments of compare().
 struct CompareQuery {
-  std::vector<std::string> by;       ///< swept keys; jobs with equal values of these keys form a group
-  std::string metric;                ///< column of results.csv
-  const Condition* where = nullptr;  ///< condition on columns of results.csv; jobs that do not satisfy it are left out;
-                                     ///< null for no condition
-  std::optional<std::string> baseline;  ///< name of the group that all others are compared with: "weighted, rbf". If
-                                        ///< the scene is one of the keys, "weighted" names that group of each scene.
-  bool ratios = false;                  ///< whether to compute the ratio of the means of each pair
+  std::vector<std::string> by;  ///< swept keys; jobs with equal values of these keys form a group
+  std::string metric;           ///< column of results.csv
+  /// condition on columns of results.csv, or null; jobs that do not satisfy it are left out
+  const Condition* where = nullptr;
+  /// Name of the group with which all others are compared: "weighted, rbf". If the scene is one of the keys, "weighted"
+  /// names the group `weighted` of each scene.
+  std::optional<std::string> baseline;
+  bool ratios = false;  ///< whether to compute the ratio of the means for each pair
   CompareExtent extent = CompareExtent::pairs;
 };
 
 struct ComparedGroup {
   std::string name;  ///< values in the order of the keys: "weighted, rbf"; "(none)" for a key that the jobs lack
-  std::vector<std::string> values;  ///< the same values one by one
+  std::vector<std::string> values;  ///< the values in `name`, as a list
   StatusCounts counts;
-  int never = 0;      ///< jobs that never reached the goal of the occasion and count with their final values
-  MeanEstimate mean;  ///< over the jobs with a value; clusters are seeds, or jobs if jobs are the units
+  /// number of jobs that never reached the goal of the occasion; they count with their final values
+  int never = 0;
+  MeanEstimate mean;  ///< mean over the jobs with a value; its clusters are seeds, or jobs if jobs are the units
   double median = 0.0;
-  double low_10 = 0.0;  ///< 10 % and 90 % quantiles over the jobs
+  double low_10 = 0.0;  ///< `low_10` and `high_90` are the 10 % and 90 % quantiles over the jobs
   double high_90 = 0.0;
 };
 
-/// Differences `first` minus `second` over the pairs of jobs that both have a value.
+/// Differences `first` minus `second`, over the pairs of jobs in which both have a value.
 struct ComparedPair {
-  std::size_t first = 0;  ///< indices in Comparison::groups
+  std::size_t first = 0;  ///< `first` and `second` are indices in Comparison::groups
   std::size_t second = 0;
-  /// Incomplete pairs. A pair counts as left out if the condition keeps one of its jobs.
+  /// Pairs of jobs without two values, by status. A pair counts as left out if the condition keeps one of its jobs.
   StatusCounts lost;
-  MeanEstimate difference;             ///< count: pairs of jobs; clusters: seeds
-  std::optional<RatioEstimate> ratio;  ///< mean of the first divided by mean of the second; nullopt unless requested
-                                       ///< and defined
-  SignedRank test;                     ///< of the means per unit (JobUnits)
-  std::optional<double> p_holm;        ///< p adjusted for all pairs of this comparison; nullopt for a single pair
+  MeanEstimate difference;  ///< mean difference; it counts pairs of jobs, and its clusters are seeds
+  /// Mean of the first divided by mean of the second; nullopt if not requested or not defined.
+  std::optional<RatioEstimate> ratio;
+  SignedRank test;  ///< test of the means per unit (JobUnits)
+  /// p of the test, adjusted for all pairs of this comparison; nullopt for a single pair
+  std::optional<double> p_holm;
 };
 
 struct Comparison {
   Column metric;
   std::vector<std::string> by;
-  bool by_seed = false;              ///< whether seeds are the units (JobUnits)
-  std::vector<std::string> pairing;  ///< the other swept keys that vary; both jobs of a pair have equal values of them
-  /// Keys of `pairing` for which some compared groups have no value in common, and so no pairs.
+  bool by_seed = false;  ///< whether seeds are the units (JobUnits)
+  /// the other swept keys that vary; the two jobs of a pair have equal values of them
+  std::vector<std::string> pairing;
+  /// Keys of `pairing` for which some compared groups have no value in common. Such groups have no pairs.
   std::vector<std::string> apart;
-  std::vector<ComparedGroup> groups;  ///< sorted by the first key, then the second; values in the order of the sweep
-  std::vector<ComparedPair> pairs;    ///< each group with the groups before it, or with the baseline alone
-  /// Returns the means of the groups that have one.
+  std::vector<ComparedGroup> groups;  ///< sorted by their values of the keys; values are in the order of the sweep
+  std::vector<ComparedPair> pairs;    ///< pairs of each group with each earlier group, or only with the baseline
+  /// Returns the means of all groups that have one.
   std::vector<double> means() const;
-  /// Returns whether some units have several values although seeds are not the units: copies of a run.
+  /// Returns whether some units have several values although seeds are not the units. Such values come from copies of a
+  /// run.
   bool has_copies() const;
 
-  std::size_t compared = 0;  ///< number of groups with jobs; groups that the condition leaves out entirely have no
-                             ///< pairs
+  /// Number of groups with jobs. A group without jobs, because the condition leaves them all out, has no pairs.
+  std::size_t compared = 0;
   bool one_baseline = false;
   bool scenes_apart = false;  ///< whether the scene is one of the keys; groups of different scenes form no pair
   bool ratios = false;        ///< whether ratios were requested
-  std::optional<Checkpoint> occasion;  ///< the point of a run at which the jobs are compared; nullopt: their ends
+  std::optional<Checkpoint> occasion;  ///< point of the runs at which jobs are compared; nullopt: the end of each job
   int jobs = 0;                        ///< number of jobs of the sweep
-  StatusCounts left_out;               ///< jobs that the condition leaves out, by the status that they would have
+  StatusCounts left_out;               ///< jobs that the condition leaves out, by their status without the condition
 };
 
-/// Number of groups per scene up to which all pairs are compared. With more groups, only pairs with the baseline are;
-/// the default baseline is the first group.
+/// Largest number of groups per scene for which all pairs are compared. With more groups, only pairs with the baseline
+/// are compared. The default baseline is the first group.
 inline constexpr std::size_t kMostGroupsInPairs = 8;
 
-/// Compares the jobs of `sweep`, whose rows of results.csv are `results`. Throws Error of the command line for: keys
-/// that are not swept; a metric that does not exist, is not a result, holds no numbers or has no value in any job; an
-/// unknown baseline; and a condition with unknown columns or without matching jobs.
+/// Compares the jobs of `sweep`, whose rows of results.csv are `results`. Throws Error of the command line for keys
+/// that are not swept, an unusable metric, and an unknown baseline. Also throws it for a condition with unknown columns
+/// or without matching jobs. A metric is unusable if it does not exist, is not a result, holds no numbers, or has no
+/// value in any job.
 Comparison compare(const Sweep& sweep, const std::vector<Row>& results, const CompareQuery& query);
 
 }  // namespace palpate

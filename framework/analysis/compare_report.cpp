@@ -23,7 +23,7 @@ std::string keys_text(const std::vector<std::string>& keys) {
   return one_line(fmt::format("{}", fmt::join(keys, ", ")));
 }
 
-/// Returns the scale of the groups, with enough decimals for two digits of the narrowest interval.
+/// Returns a scale like that of the groups, but with enough decimals for two digits of the narrowest interval.
 Scale difference_scale(const Comparison& comparison, const Scale& groups) {
   std::vector<double> widths;
   for (const ComparedPair& pair : comparison.pairs) {
@@ -35,13 +35,13 @@ Scale difference_scale(const Comparison& comparison, const Scale& groups) {
   return scale;
 }
 
-/// Returns a quantile. Whole numbers stay without decimals: quantiles mostly equal one of the values.
+/// Returns a quantile. Whole numbers have no decimals, because quantiles mostly equal one of the values.
 std::string short_number(const Scale& scale, double value) {
   const double shown = value / scale.factor;
   return shown == std::round(shown) && std::abs(shown) < 1e6 ? fmt::format("{:.0f}", shown) : scale.number(value);
 }
 
-/// Returns whether numbers replace the names of groups in pairs, because long names would make the lines too long.
+/// Returns whether pairs show numbers instead of the names of groups, because long names would make the lines too long.
 bool numbered(const Comparison& comparison) {
   constexpr std::size_t kLongest = 16;
   return std::any_of(comparison.groups.begin(), comparison.groups.end(),
@@ -62,7 +62,7 @@ std::string pair_name(const Comparison& comparison, const ComparedPair& pair) {
   return fmt::format("{} - {}", comparison.groups[pair.first].name, comparison.groups[pair.second].name);
 }
 
-/// Begins the row of a group or pair with the fields that both have.
+/// Begins the row of a group or of a pair with the fields that both kinds of rows have.
 void begin_row(Table& table, const Comparison& comparison, const std::string& where, const char* kind) {
   table.add_row();
   table.store("kind", kind);
@@ -118,7 +118,7 @@ std::string p_text(const std::optional<double>& p) {
   return *p < 1e-3 ? fmt::format("{:.0e}", *p) : fmt::format("{:.3f}", *p);
 }
 
-/// Words for the sign of a difference.
+/// Words that express the sign of a difference.
 struct Words {
   const char* up;
   const char* down;
@@ -128,8 +128,8 @@ Words words_of(const Column& metric) {
   return metric.better == Better::neither ? Words{"higher", "lower"} : Words{"better", "worse"};
 }
 
-/// Returns the numbers of units in which the first group has the better mean, and the worse one. For metrics without a
-/// better direction: the higher mean, and the lower one.
+/// Returns the number of units in which the first group has the better mean, and the number in which it has the worse
+/// mean. If no direction of the metric is better, returns the numbers for the higher mean and for the lower mean.
 std::pair<std::size_t, std::size_t> sides(const Comparison& comparison, const SignedRank& test) {
   if (comparison.metric.better == Better::less) return {test.lower, test.higher};
   return {test.higher, test.lower};
@@ -193,7 +193,7 @@ Table pair_table(const Comparison& comparison, const Scale& scale, const std::st
   return table;
 }
 
-/// Returns a remark if mean and majority of the units disagree on the better group.
+/// Returns a remark if the mean favours one group and the majority of the units favours the other.
 std::string contrary_note(const Comparison& comparison, const ComparedPair& pair) {
   const auto& ends = pair.difference.interval;
   if (!ends || (ends->low <= 0.0 && ends->high >= 0.0)) return {};
@@ -225,8 +225,8 @@ std::string few_note(const Comparison& comparison) {
   return few_words(fewest, comparison.by_seed, kLeastForInterval);
 }
 
-/// Returns remarks on groups that hold copies of runs, and on groups and pairs without an interval because their values
-/// are equal.
+/// Returns remarks about groups with copies of runs, and about groups and pairs that have no interval because their
+/// values are equal.
 std::string units_note(const Comparison& comparison) {
   std::string out;
   const auto equal = [&](const std::string& name, const MeanEstimate& mean, bool difference) {
@@ -243,7 +243,7 @@ std::string units_note(const Comparison& comparison) {
   return out;
 }
 
-/// Returns a remark on keys for which some compared groups have no value in common, with the remedy.
+/// Returns a remark about keys for which some compared groups have no value in common, with a remedy.
 std::string apart_note(const Comparison& comparison) {
   std::vector<std::string> keys = comparison.apart;
   const auto seed = std::find(keys.begin(), keys.end(), "seed");
@@ -258,7 +258,7 @@ std::string apart_note(const Comparison& comparison) {
                            one_line(fmt::format("{}", fmt::join(keys, ","))));
 }
 
-/// Returns the number of groups with jobs that are in no pair.
+/// Returns the number of groups that have jobs but are in no pair.
 std::size_t groups_without_pair(const Comparison& comparison) {
   std::set<std::size_t> paired;
   for (const ComparedPair& one : comparison.pairs) paired.insert({one.first, one.second});

@@ -21,7 +21,8 @@ namespace fs = std::filesystem;
 constexpr double kPointsPerInch = 72.0;
 constexpr double kSvgDpi = 96.0;
 
-/// Returns the first line with words: gnuplot's messages begin with lines of blanks and a caret below the script.
+/// Returns the first line that has words. gnuplot's messages begin with lines of blanks and a caret, which points to a
+/// position in the script.
 std::string first_words(const std::string& text) {
   std::istringstream lines(text);
   std::string line;
@@ -65,7 +66,7 @@ std::string picture_header(int width, int height, const fs::path& file, const st
     // A point of gnuplot's fonts is one pixel of an SVG and 4/3 pixels of a PNG; a line is one pixel wide.
     if (is_print)
       terminal += fmt::format(" fontscale {:.4g} linewidth {:.4g}", is_svg ? pixels : 0.75 * pixels, pixels);
-    mark = is_svg ? 0.65 : 0.95;  // as large as in a PDF
+    mark = is_svg ? 0.65 : 0.95;  // The marks are as large as in a PDF.
   }
   terminal += fmt::format(" font 'DejaVu Sans,{}'", is_print ? 8 : 12);
   if (extension == ".svg") terminal += " background rgb 'white'";
@@ -75,8 +76,8 @@ std::string picture_header(int width, int height, const fs::path& file, const st
 
 std::string draw_picture(const std::string& script, int width, int height, const fs::path& file, PictureUnit unit) {
   TemporaryFile picture(file);
-  Program program{{"gnuplot", "--default-settings"}};  // ignores the user's settings of gnuplot
-  program.own_group = false;                           // Ctrl-C ends gnuplot, too
+  Program program{{"gnuplot", "--default-settings"}};  // gnuplot must ignore the settings of the user.
+  program.own_group = false;                           // Ctrl-C must end gnuplot, too.
   const std::string output = fs::absolute(picture.path()).string();
   const std::unique_ptr<ChildProcess> gnuplot =
       ChildProcess::start(program, picture_header(width, height, file, output, unit) + script);

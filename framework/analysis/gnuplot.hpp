@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Pictures drawn by gnuplot, a child process that reads its script from an unnamed temporary file.
+// Pictures drawn by gnuplot in a child process, which reads its script from an unnamed temporary file.
 #pragma once
 
 #include <fmt/format.h>
@@ -10,13 +10,13 @@
 
 namespace palpate {
 
-/// Returns `text` as a string literal of gnuplot, in which nothing is a command, macro or format.
+/// Returns `text` as a string literal of gnuplot. Nothing in the literal acts as a command, macro or format.
 std::string gnuplot_text(const std::string& text);
 
 /// Returns the text of a template in figure_templates.gnuplot.
 std::string_view template_text(std::string_view name);
 
-/// Returns the template with its placeholders replaced by the arguments.
+/// Returns a template with its placeholders replaced by the arguments.
 template <class... Arguments>
 std::string fill_template(std::string_view name, const Arguments&... arguments) {
   return fmt::format(fmt::runtime(template_text(name)), arguments...);
@@ -31,14 +31,15 @@ enum class PictureUnit {
 /// Pixels per inch of a PNG for print.
 inline constexpr int kPrintDpi = 300;
 
-/// Returns the first lines of a script, which set gnuplot's terminal and output. The terminal follows from the
-/// extension of `file` (.png, .pdf or .svg), for a picture of `width` by `height` units; `output` is the file that
-/// gnuplot writes. For print, the variable `mark_size` has a size of marks that suits letters of 8 points.
+/// Returns the first lines of a script, which set gnuplot's terminal and output. The extension of `file` (.png, .pdf or
+/// .svg) determines the terminal, for a picture of `width` by `height` units. `output` is the file that gnuplot writes.
+/// For print, the script has a variable `mark_size`, a size of marks that suits letters of 8 points.
 std::string picture_header(int width, int height, const std::filesystem::path& file, const std::string& output,
                            PictureUnit unit = PictureUnit::pixel);
 
-/// Draws `script` (without terminal and output) and renames the picture to `file`, whose extension decides the format
-/// as in picture_header(). Returns "" or one line with the reason why there is no picture.
+/// Draws `script`, which must not set terminal and output, and renames the picture to `file`. The extension of `file`
+/// determines the format, as in picture_header(). Returns "" after success, else one line with the reason why there is
+/// no picture.
 std::string draw_picture(const std::string& script, int width, int height, const std::filesystem::path& file,
                          PictureUnit unit = PictureUnit::pixel);
 

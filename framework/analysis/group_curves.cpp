@@ -25,7 +25,8 @@ struct JobCurve {
   const std::vector<double>* seconds = nullptr;  ///< robot time at the end of each tap; null for curves against taps
   std::string unit;
 
-  /// Returns the value after the last tap up to `at` (taps or seconds); NaN before the first tap.
+  /// Returns the value after the last tap that is not later than `at` (taps or seconds). Returns NaN before the first
+  /// tap.
   double value(double at) const {
     std::size_t taps = std::min(static_cast<std::size_t>(std::max(at, 0.0)), metric->size());
     if (seconds != nullptr)
@@ -72,7 +73,8 @@ bool has_value(const std::vector<double>& values) {
   return std::any_of(values.begin(), values.end(), [](double one) { return std::isfinite(one); });
 }
 
-/// Returns the status of a job in the curve of its group. `metric` has the job's values after each tap, null for none.
+/// Returns the status of a job in the curve of its group. `metric` has the job's values after each tap; it is null if
+/// the job has none.
 ValueStatus status_of(const JobResult& job, const std::vector<double>* metric, const JobCondition& where,
                       const CurvesQuery& query) {
   const ValueStatus status = value_of_job(job.row, query.metric, "--metric").status;
@@ -81,7 +83,7 @@ ValueStatus status_of(const JobResult& job, const std::vector<double>* metric, c
   return metric != nullptr && has_value(*metric) ? ValueStatus::counted : ValueStatus::without_value;
 }
 
-/// Makes the curve of a group, whose first `scenes` values belong to the scene.
+/// Makes the curve of a group. The first `scenes` values of the group belong to the scene.
 GroupCurve make_curve(const JobGroup& group, std::size_t scenes, const std::vector<TapValues>& values,
                       const JobUnits& units, const JobCondition& where, const CurvesQuery& query) {
   const auto split = group.values.begin() + static_cast<std::ptrdiff_t>(scenes);
@@ -105,7 +107,7 @@ GroupCurve make_curve(const JobGroup& group, std::size_t scenes, const std::vect
   return curve;
 }
 
-/// Throws Error with the reason if there is nothing to draw.
+/// Throws Error if there is nothing to draw; the error has the reason.
 void check_points(const GroupCurves& made, const Sweep& sweep) {
   if (made.curves.empty())
     throw Error("command line", fmt::format("--where: matches none of the {} jobs", made.jobs),
@@ -182,7 +184,7 @@ GroupCurves make_group_curves(const Sweep& sweep, const std::vector<Row>& result
   const std::vector<std::string> columns = names_of(results);
   GroupCurves out;
   out.metric = find_metric(sweep, query.metric, columns);
-  // If `taps` is swept, it is both a key and the number of taps made.
+  // Even if `taps` is a swept key, the axis is the number of taps that were made.
   out.against = query.against == kAgainstTaps ? Column{kAgainstTaps} : find_column(query.against, columns, "--against");
   out.by = query.by;
   out.jobs = static_cast<int>(sweep.jobs.size());

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Curves of groups over their taps: the mean of a summary field with its 95 % interval, against taps or robot time. The
-// command, figures, CSV, pages and Python show these numbers.
+// command, figures, CSV files, pages and the Python module show these numbers.
 #pragma once
 
 #include "analysis/column.hpp"
@@ -23,11 +23,11 @@ inline constexpr const char* kAgainstTime = "robot_seconds";
 /// Values of some columns of one job after 1, 2, ... taps; NaN for no value.
 using TapValues = std::map<std::string, std::vector<double>>;
 
-/// Returns whether any job has a value of the column after some tap.
+/// Returns whether any job has a value of the column after at least one tap.
 bool any_has(const std::vector<TapValues>& jobs, const std::string& column);
 
-/// Returns a function that stores the columns of each job in `values`, which has an element per job. Jobs without kept
-/// summaries leave their element empty. `values` must outlive the function.
+/// Returns a function that stores the columns of each job in `values`, which has an element per job. The elements of
+/// jobs without stored summaries stay empty. `values` must outlive the function.
 TapSummaries::Use keep_values(std::vector<TapValues>& values, std::vector<std::string> columns);
 
 struct CurvesQuery {
@@ -35,21 +35,23 @@ struct CurvesQuery {
   std::string metric;                  ///< column of results.csv
   std::string against = kAgainstTaps;  ///< kAgainstTaps or kAgainstTime
   const Condition* where = nullptr;    ///< condition on columns of results.csv; other jobs are left out; null for none
-  bool students = false;  ///< whether all intervals are Student's t, as on pages, which is fast; else as in
-                          ///< mean_of_sample()
+  /// Whether all intervals are Student's t, which is fast and used on pages. Otherwise they are those of
+  /// mean_of_sample().
+  bool students = false;
 };
 
 struct CurvePoint {
-  double at = 0.0;    ///< taps or seconds
-  MeanEstimate mean;  ///< over the jobs with a value at this point; clusters: JobUnits
+  double at = 0.0;    ///< position on the axis: taps or seconds
+  MeanEstimate mean;  ///< mean over the jobs with a value at this point; its clusters are the units of JobUnits
 };
 
 struct GroupCurve {
-  std::vector<std::string> scene;   ///< values of GroupCurves::scenes
-  std::vector<std::string> values;  ///< values of GroupCurves::by
-  StatusCounts counts;              ///< counts of the group's jobs; without_value: no value at any point
-  int ended = 0;                    ///< counted jobs with fewer taps than others of the group
-  std::vector<CurvePoint> points;   ///< with ascending `at`; empty if no job has a value
+  std::vector<std::string> scene;   ///< values of the keys GroupCurves::scenes
+  std::vector<std::string> values;  ///< values of the keys GroupCurves::by
+  /// counts of the group's jobs by status; `without_value` are jobs without a value at any point
+  StatusCounts counts;
+  int ended = 0;                   ///< number of counted jobs that have fewer taps than other jobs of the group
+  std::vector<CurvePoint> points;  ///< with ascending `at`; empty if no job has a value
 
   std::string name() const;        ///< returns "weighted, rbf"; "all jobs" if no key forms groups
   std::string scene_name() const;  ///< returns "ring"; "" if the sweep has one scene or the scene is in `by`
@@ -58,26 +60,28 @@ struct GroupCurve {
 struct GroupCurves {
   Column metric;
   Column against;
-  std::vector<std::string> scenes;  ///< scene_keys() that are not in `by`; each of their values has its own curves
+  /// those scene_keys() that are not in `by`; each combination of their values has its own curves
+  std::vector<std::string> scenes;
   std::vector<std::string> by;
   bool by_seed = false;            ///< whether seeds are the units (JobUnits)
   int jobs = 0;                    ///< number of jobs of the sweep
   std::vector<GroupCurve> curves;  ///< in the order of the sweep, scene by scene
 
-  /// Returns the names of the scenes with curves, in their order; one "" for a sweep with one scene.
+  /// Returns the names of the scenes with curves, in their order. For a sweep with one scene, the only name is "".
   std::vector<std::string> scene_names() const;
 };
 
 /// Returns the default keys of groups: all keys that vary except the seed and the keys of the scene.
 std::vector<std::string> curve_keys(const Sweep& sweep);
 
-/// Makes the curves of the jobs of `sweep`, whose rows of results.csv are `results`. `values` hold at least the metric
-/// and the axis.
+/// Makes the curves of the jobs of `sweep`, whose rows of results.csv are `results`. `values` must contain at least the
+/// metric and the axis.
 ///
-/// Against taps, a group has one point per tap up to the longest of its jobs. Against robot time, it has 60 points,
-/// from the time at which all its jobs have made a tap to the end of its last job; a job counts with its value after
-/// its last tap by then. A job that has ended counts with its final value, as in `compare --at`. Jobs that failed or
-/// have not ended are left out. Throws Error of the command line as compare() does, and if there is nothing to draw.
+/// Against taps, a group has one point per tap up to the longest of its jobs. Against robot time, it has 60 points. The
+/// first is the time at which all its jobs have made a tap, and the last is the end of its last job. At each point, a
+/// job counts with its value after its last tap up to this time. A job that has ended counts with its final value, as
+/// in `compare --at`. Jobs that failed or have not ended are left out. Throws the errors of compare(), and Error if
+/// there is nothing to draw.
 GroupCurves make_group_curves(const Sweep& sweep, const std::vector<Row>& results, const std::vector<TapValues>& values,
                               const CurvesQuery& query);
 

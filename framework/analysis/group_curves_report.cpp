@@ -29,7 +29,8 @@ std::pair<std::size_t, std::size_t> units_at_points(const GroupCurves& curves) {
   return out;
 }
 
-/// Returns positions of points spread evenly along the longest curve; the last one is the curve's end.
+/// Returns the positions of points that are evenly spaced along the longest curve. The last point is the end of the
+/// curve.
 std::vector<double> shown_places(const GroupCurves& curves) {
   const auto longest =
       std::max_element(curves.curves.begin(), curves.curves.end(),
@@ -43,7 +44,7 @@ std::vector<double> shown_places(const GroupCurves& curves) {
   return out;
 }
 
-/// Returns the last point up to `at`; null before the first point and after the last.
+/// Returns the last point that is not after `at`. Returns null before the first point and after the last one.
 const CurvePoint* point_at(const GroupCurve& curve, double at) {
   const CurvePoint* out = nullptr;
   for (const CurvePoint& point : curve.points) {

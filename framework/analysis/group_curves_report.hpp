@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Output of group curves: a table with remarks, and rows for programs. The picture is in report/figures.
+// Output of group curves: a table with remarks, and rows for programs. The picture of the curves is in report/figures.
 #pragma once
 
 #include "analysis/group_curves.hpp"
@@ -14,18 +14,20 @@ namespace palpate {
 /// Returns the unit and the digits for the means of all curves.
 Scale metric_scale(const GroupCurves& curves);
 
-/// Returns the number of units at the points: "12 seeds", "10 to 12 seeds"; jobs if the seed is not swept.
+/// Returns the number of units at the points: "12 seeds", "10 to 12 seeds". If the seed is not swept, the units are
+/// jobs.
 std::string curve_units_words(const GroupCurves& curves);
 
 /// Returns one line per group with mean and interval at four points along the axis, and the remarks.
 std::string curves_table(const GroupCurves& curves);
 
-/// Returns remarks, one per line: jobs that are missing at all or some points, jobs that ended early, few units.
+/// Returns remarks, one per line, about jobs that are missing at all or some points, jobs that ended early, and few
+/// units.
 std::string curve_remarks(const GroupCurves& curves);
 
-/// Returns one row per point of each curve, in SI units: `metric`, `against`, the keys of scene and group, `at` (taps
-/// or seconds), `n`, `units`, `mean`, `low_95`, `high_95`, and for the group `jobs`, `left_out`, `failed`,
-/// `unfinished`, `without_value` and `ended`.
+/// Returns one row per point of each curve, in SI units. A row has `metric`, `against`, the keys of scene and group,
+/// `at` (taps or seconds), `n`, `units`, `mean`, `low_95` and `high_95`. It also has the counts `jobs`, `left_out`,
+/// `failed`, `unfinished`, `without_value` and `ended` of the group.
 std::vector<Row> curves_rows(const GroupCurves& curves);
 
 }  // namespace palpate

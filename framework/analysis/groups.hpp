@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Groups of a sweep's jobs by the values of keys, and the units of their statistics. Tables, pictures, `palpate pareto`
-// and `palpate compare` use them. On the page of a sweep the reader chooses the keys, so sweep_numbers.js forms its
-// groups.
+// and `palpate compare` use them. On the page of a sweep the reader chooses the keys, so there sweep_numbers.js forms
+// the groups.
 #pragma once
 
 #include "analysis/column.hpp"
@@ -18,7 +18,7 @@
 
 namespace palpate {
 
-/// A job and its row of results.csv, null until the job has ended.
+/// A job with its row of results.csv. The row is null until the job has ended.
 struct JobResult {
   const Job* job = nullptr;
   const Row* row = nullptr;
@@ -30,38 +30,40 @@ struct JobGroup {
   std::vector<JobResult> jobs;
 };
 
-/// Returns the values of a group for people, each on one line; "(none)" for an option that the jobs lack.
+/// Returns the values of a group for display, each on one line. An option that the jobs lack is shown as "(none)".
 std::vector<std::string> shown_values(const std::vector<std::string>& values);
 
-/// Groups all jobs by the values of `keys`, which are swept. The groups stand in the order of their first jobs; without
-/// keys there is one group. `sweep` and `results` must outlive the result.
+/// Groups all jobs by their values of `keys`, which must be swept keys. The groups are in the order of their first
+/// jobs. If there are no keys, there is one group. `sweep` and `results` must outlive the result.
 std::vector<JobGroup> group_jobs(const Sweep& sweep, const std::vector<Row>& results,
                                  const std::vector<std::string>& keys);
 
-/// Returns the values of a column over the done jobs that have one, ascending. Throws Error as value_of_job().
+/// Returns the values of a column in ascending order, over the done jobs that have one. Throws the errors of
+/// value_of_job().
 std::vector<double> values_of(const JobGroup& group, const std::string& column, const std::string& option);
 
-/// Returns the swept keys that define a setting: all except the seed.
+/// Returns the swept keys that define a setting. These are all except the seed.
 std::vector<std::string> setting_keys(const Sweep& sweep);
 
 /// Returns those of `keys` that have several values in the sweep.
 std::vector<std::string> varying_keys(const Sweep& sweep, const std::vector<std::string>& keys);
 
-/// Returns the keys of the tapped scene that have several values: `scene` and keys below it. Results on different
-/// scenes are not comparable, so means, bands and fronts use the jobs of one scene.
+/// Returns those keys of the tapped scene (`scene` and the keys below it) that have several values. Results on
+/// different scenes are not comparable. A mean, a band or a front therefore uses only the jobs of one scene.
 std::vector<std::string> scene_keys(const Sweep& sweep);
 
-/// Throws Error of the command line unless the keys of --by can form groups: swept keys other than the seed, each once.
+/// Throws Error of the command line unless the keys of --by can form groups. The keys must be swept, differ from each
+/// other, and not include the seed.
 void check_group_keys(const Sweep& sweep, const std::vector<std::string>& keys);
 
 /// Returns the column of --metric. A name that is both a swept key and a result means the result (see result_of()).
-/// Throws Error of the command line for a swept key that is not a result, and as find_column() does.
+/// Throws Error of the command line for a swept key that is not a result. Also throws the errors of find_column().
 Column find_metric(const Sweep& sweep, const std::string& name, const std::vector<std::string>& columns);
 
 /// A condition on the columns of results.csv, which selects jobs.
 class JobCondition {
  public:
-  /// `where` is null for no condition. All arguments must outlive the object.
+  /// If `where` is null, there is no condition. All arguments must outlive the object.
   JobCondition(const Sweep& sweep, const std::vector<std::string>& columns, const Condition* where);
 
   /// Returns whether the job satisfies the condition. Throws Error for an unknown column.
@@ -71,12 +73,12 @@ class JobCondition {
   const Sweep& sweep_;
   const std::vector<std::string>& columns_;
   const Condition* where_;
-  std::vector<std::string> names_;  ///< columns, then keys that are not columns
+  std::vector<std::string> names_;  ///< columns, followed by keys that are not columns
 };
 
-/// The unit of statistics of each job. If several seeds are swept, seeds are the units: jobs with the same seed share
-/// all random draws and are not independent. Otherwise jobs are the units; copies of a run, equal in all columns that
-/// do not depend on the machine, are one unit.
+/// The unit of statistics of each job. If several seeds are swept, seeds are the units, because jobs with the same seed
+/// share all random draws and are not independent. Otherwise jobs are the units. Copies of a run form one unit; copies
+/// are equal in all columns that do not depend on the machine.
 class JobUnits {
  public:
   /// `sweep` must outlive the object.
@@ -84,13 +86,13 @@ class JobUnits {
 
   bool are_seeds() const { return are_seeds_; }
 
-  /// Returns the name of the job's unit. If jobs are the units, a job that has not ended has the name "".
+  /// Returns the name of the job's unit. If jobs are the units, the name is "" for a job that has not ended.
   std::string of(const JobResult& job) const;
 
  private:
   const Sweep& sweep_;
   bool are_seeds_ = false;
-  std::set<std::string> compared_;  ///< compared columns, if jobs are the units
+  std::set<std::string> compared_;  ///< columns in which copies are equal, if jobs are the units
 };
 
 /// Sorts values into clusters, one per unit of JobUnits, in the order in which units first appear.
@@ -107,8 +109,8 @@ class UnitClusters {
 /// Returns the value of a key in a job; "" if the key is not swept.
 std::string value_of(const Sweep& sweep, const Job& job, const std::string& key);
 
-/// Returns a job's values of some keys on one line: "acquisition=weighted, taps=17", or without keys "weighted, 17".
-/// Keys without a value are left out.
+/// Returns a job's values of some keys on one line: "acquisition=weighted, taps=17". Without the keys, the line is
+/// "weighted, 17". Keys without a value are left out.
 std::string key_words(const Sweep& sweep, const Job& job, const std::vector<std::string>& keys, bool with_keys);
 
 }  // namespace palpate

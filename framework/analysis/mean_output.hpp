@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Means with their intervals as text (numbers by config/display_units.hpp) and as fields of rows.
+// Means with their intervals as text and as fields of rows. Numbers in texts have the format of config/scale.hpp.
 #pragma once
 
 #include "analysis/column.hpp"
@@ -17,7 +17,7 @@
 
 namespace palpate {
 
-/// Returns "3.21 [3.02, 3.40]" with numbers formatted by `number`; "3.21 [-]" without an interval.
+/// Returns "3.21 [3.02, 3.40]", with numbers formatted by `number`. If there is no interval, returns "3.21 [-]".
 std::string with_interval(double value, const std::optional<MeanInterval>& ends,
                           const std::function<std::string(double)>& number);
 
@@ -32,22 +32,23 @@ std::string units_words(std::size_t units, bool seeds);
 /// Returns "3 to 5 seeds" if the numbers differ.
 std::string units_words(std::size_t least, std::size_t most, bool seeds);
 
-/// Number of seeds, or jobs, below which a remark says that there are few. Intervals of fewer units miss the true mean
-/// clearly more often than 5 times in 100.
+/// Number of seeds, or jobs, below which a remark points out that there are few. With fewer units, intervals miss the
+/// true mean clearly more often than 5 times in 100.
 inline constexpr std::size_t kEnoughUnits = 10;
 
-/// Returns a remark on a mean over few seeds or jobs; "" from kEnoughUnits on. `least` is the least number of units for
-/// an interval.
+/// Returns a remark about a mean over few seeds or jobs. Returns "" if there are at least kEnoughUnits. `least` is the
+/// smallest number of units that gives an interval.
 std::string few_words(std::size_t units, bool seeds, std::size_t least);
 
-/// Returns a remark with the number of a group's jobs that are copies of another run, if jobs are the units.
+/// Returns a remark about how many of a group's jobs are copies of another run, if jobs are the units.
 std::string copies_words(const std::string& name, std::size_t jobs, std::size_t units);
 
-/// Adds the fields `prefix`mean, `prefix`low_95 and `prefix`high_95; null for no value.
+/// Adds the fields `prefix`mean, `prefix`low_95 and `prefix`high_95. Missing values are null.
 void add_mean(Row& row, const std::string& prefix, const MeanEstimate& estimate);
-/// Adds the two ends of the interval alone.
+/// Adds only the two ends of the interval.
 void add_interval(Row& row, const std::string& prefix, const std::optional<MeanInterval>& ends);
-/// Adds the number of jobs and the numbers per status; `left_out` adds the jobs that a condition leaves out.
+/// Adds the number of jobs and the numbers per status. If `left_out` is set, also adds the number of jobs that a
+/// condition leaves out.
 void add_counts(Row& row, const StatusCounts& counts, bool left_out = false);
 
 }  // namespace palpate

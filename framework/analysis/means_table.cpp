@@ -13,14 +13,15 @@
 namespace palpate {
 namespace {
 
-/// Significant digits of the least mean in a table of means alone: tens and hundreds then have no decimals.
+/// Significant digits of the least mean in a table without intervals. Tens and hundreds then have no decimals.
 constexpr int kDigits = 2;
 
-/// Significant digits of the least mean beside intervals, for means without one; the same as in text tables.
+/// Significant digits of the least mean in a table with intervals, used for means that have no interval. Text tables
+/// use the same number.
 constexpr int kDigitsBesideIntervals = 3;
 
-/// Returns the scale of a metric over all rows. `first` is its first comparison, the next ones follow at distances of
-/// `step`.
+/// Returns the scale of a metric over all rows. The first comparison of the metric has the index `first`. The others
+/// follow at distances of `step`.
 Scale scale_of(const std::vector<Comparison>& comparisons, std::size_t first, std::size_t step, int digits) {
   std::vector<double> means;
   for (std::size_t i = first; i < comparisons.size(); i += step) {
@@ -36,8 +37,8 @@ int decimals_of(const MeanInterval& ends, double factor) {
   return half > 0.0 ? std::clamp(1 - static_cast<int>(std::floor(std::log10(half))), 0, 9) : 0;
 }
 
-/// Returns "$3.21\ [3.02, 3.40]$" in math mode, in which a hyphen is a minus sign. Mean and bounds have the same number
-/// of decimals, which follows from the interval.
+/// Returns "$3.21\ [3.02, 3.40]$". It is in math mode, in which a hyphen is a minus sign. Mean and bounds have the same
+/// number of decimals, which depends on the width of the interval.
 std::string latex_estimate(const Scale& scale, const MeanEstimate& mean) {
   if (mean.count == 0) return "--";
   if (!mean.interval || scale.scientific || !(mean.interval->high > mean.interval->low))
@@ -52,10 +53,11 @@ std::string latex_estimate(const Scale& scale, const MeanEstimate& mean) {
 
 bool has_taps(const Comparison& one) { return one.occasion && one.occasion->taps(); }
 
-/// Layout of the comparisons: `metrics` comparisons for the first occasion, then as many for the next.
+/// Layout of the comparisons: one comparison per metric for the first occasion, then one per metric for the next
+/// occasion, and so on.
 struct MeansLayout {
   std::size_t metrics = 0;
-  std::vector<Scale> scales;  ///< one per metric
+  std::vector<Scale> scales;  ///< one scale per metric
 
   std::string title(const std::vector<Comparison>& comparisons, std::size_t metric) const {
     return scales[metric].title(comparisons[metric].metric.name);
@@ -73,7 +75,8 @@ MeansLayout layout_of(const std::vector<Comparison>& comparisons, int digits) {
   return out;
 }
 
-/// Adds a row per group and occasion: its names, then the cells that `show` adds for the means of each metric.
+/// Adds one row per group and occasion. A row has the names of the group, followed by the cells that `show` adds for
+/// the means of each metric.
 template <class ShowMeans>
 Table table_of(const std::vector<Comparison>& comparisons, const MeansLayout& layout, const ShowMeans& show) {
   Table out;
@@ -94,7 +97,7 @@ Table table_of(const std::vector<Comparison>& comparisons, const MeansLayout& la
   return out;
 }
 
-/// Returns remarks on missing values: metrics that some runs lack, jobs that failed or have not ended.
+/// Returns remarks about missing values: metrics that some runs lack, and jobs that failed or have not ended.
 std::string remarks(const std::vector<Comparison>& comparisons, std::size_t metrics) {
   std::string out;
   for (std::size_t metric = 0; metric < metrics; ++metric) {
@@ -138,7 +141,7 @@ std::string means_table(const std::vector<Comparison>& comparisons) {
 
 std::string latex_table(const std::vector<Comparison>& comparisons) {
   const MeansLayout layout = layout_of(comparisons, kDigitsBesideIntervals);
-  // One column with n is enough if n is equal for all metrics.
+  // A single column n is enough if all metrics have equal n.
   bool same = true;
   std::size_t least = SIZE_MAX;
   std::size_t most = 0;

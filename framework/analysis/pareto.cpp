@@ -48,7 +48,7 @@ Setting make_setting(const JobGroup& group, const JobUnits& units, const JobCond
   return out;
 }
 
-/// Returns the value, or its negative if more is better: less loss is better.
+/// Returns the value as a loss, of which less is better. The loss is the negative value if more is better.
 double loss(const Pareto& pareto, double value) { return pareto.more_is_better() ? -value : value; }
 
 /// Returns the loss at the worse end of the setting's interval.
@@ -56,7 +56,7 @@ double cautious_loss(const Pareto& pareto, const Setting& setting) {
   return loss(pareto, pareto.more_is_better() ? setting.error.interval->low : setting.error.interval->high);
 }
 
-/// Sorts the settings by scene, cost and loss; settings without a value come last.
+/// Sorts the settings by scene, cost and loss. Settings without a value come last.
 void sort_settings(Pareto& pareto) {
   std::stable_sort(pareto.settings.begin(), pareto.settings.end(), [&](const Setting& a, const Setting& b) {
     if (a.scene != b.scene) return a.scene < b.scene;
@@ -68,7 +68,7 @@ void sort_settings(Pareto& pareto) {
   });
 }
 
-/// Numbers the front of each scene from 1. The settings stand in the order of scene and cost.
+/// Numbers the settings on the front of each scene from 1. The settings must be sorted by scene and cost.
 void number_front(Pareto& pareto) {
   std::vector<FrontPoint> points;
   for (std::size_t i = 0; i < pareto.settings.size(); ++i) {
@@ -127,7 +127,7 @@ Pareto make_pareto(const Sweep& sweep, const std::vector<Row>& results, const st
 
 std::vector<std::size_t> front_of(const std::vector<FrontPoint>& points) {
   std::vector<std::size_t> out;
-  const FrontPoint* last = nullptr;  // the last group's best point on the front
+  const FrontPoint* last = nullptr;  // best point on the front among the points with lower cost
   for (auto begin = points.begin(), end = begin; begin != points.end(); begin = end) {
     end = std::find_if(begin, points.end(), [&](const FrontPoint& one) {
       return std::tie(one.scene, one.cost) != std::tie(begin->scene, begin->cost);
@@ -160,7 +160,7 @@ double read_bound(const Pareto& pareto, const std::string& within) {
 }
 
 const Setting* cheapest_within(const Pareto& pareto, double bound) {
-  // The settings are sorted by cost, then error.
+  // The settings are sorted by cost, then by error, so the first match is the best.
   const auto found = std::find_if(pareto.settings.begin(), pareto.settings.end(), [&](const Setting& one) {
     return one.complete() && one.error.interval &&
            satisfies(cautious_loss(pareto, one), Relation::at_most, loss(pareto, bound));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The Pareto front of cost and error over the settings of a sweep, each averaged over its seeds. For output see
-// analysis/pareto_report.hpp.
+// The Pareto front of cost and error over the settings of a sweep. Each setting is averaged over its seeds. The output
+// is in analysis/pareto_report.hpp.
 #pragma once
 
 #include "analysis/column.hpp"
@@ -14,21 +14,22 @@
 
 namespace palpate {
 
-/// All jobs that differ in the seed alone.
+/// All jobs that differ only in the seed.
 struct Setting {
-  std::vector<std::string> values;  ///< one per key of Pareto::keys
+  std::vector<std::string> values;  ///< one value per key of Pareto::keys
   std::string name;                 ///< "acquisition=weighted, taps=17": values of the keys that vary within the sweep
   std::size_t first_job = 0;        ///< index in Sweep::jobs
   std::size_t scene = 0;            ///< index in Pareto::scenes
-  StatusCounts counts;              ///< without_value: lacks cost or error
-  MeanEstimate cost;                ///< over the done jobs with both values; clusters: units (JobUnits)
+  StatusCounts counts;              ///< numbers of jobs by status; `without_value` jobs lack cost or error
+  /// mean over the done jobs with both values; its clusters are the units of JobUnits
+  MeanEstimate cost;
   MeanEstimate error;
-  /// Number on the front of its scene, from 1 in the order of cost; 0 if another complete setting of this scene
-  /// dominates it. Settings with equal values are all on the front or all off it.
+  /// Number on the front of its scene, counted from 1 in the order of cost. It is 0 if another complete setting of this
+  /// scene dominates this setting. Of settings with equal values, either all are on the front or none is.
   int front = 0;
 
-  /// Returns whether every job has both values. Incomplete settings are shown, but neither compared nor chosen: the
-  /// mean over successful jobs ignores the failures.
+  /// Returns whether every job has both values. Incomplete settings are shown, but neither compared nor chosen, because
+  /// a mean over the successful jobs would ignore the failures.
   bool complete() const { return counts.all_are(ValueStatus::counted); }
 };
 
@@ -51,7 +52,7 @@ struct Pareto {
 Pareto make_pareto(const Sweep& sweep, const std::vector<Row>& results, const std::string& cost,
                    const std::string& error, const Condition* where = nullptr);
 
-/// A point of cost and loss, as an argument of front_of().
+/// A point with cost and loss, an argument of front_of().
 struct FrontPoint {
   std::size_t index = 0;
   std::size_t scene = 0;
@@ -60,27 +61,28 @@ struct FrontPoint {
 };
 
 /// Returns the indices of the points that no other point of their scene dominates. A point dominates another if it is
-/// at least as good in cost and loss and better in one; equal points are all on the front or all off it. The points are
-/// sorted by scene, then cost; the result keeps their order.
+/// at least as good in cost and loss and better in one. Of equal points, either all are on the front or none is. The
+/// points must be sorted by scene, then by cost. The result keeps their order.
 std::vector<std::size_t> front_of(const std::vector<FrontPoint>& points);
 
-/// Returns whether a column can be the error of a front. Coverages of 95 % intervals cannot: they are best at 0.95,
-/// neither at their least nor at their greatest value.
+/// Returns whether a column can be the error of a front. Coverages of 95 % intervals cannot, because they are best at
+/// 0.95 and not at their least or greatest value.
 bool can_be_error(const Column& column);
-/// Returns whether a column can be the cost of a front, which excludes columns of which more is better.
+/// Returns whether a column can be the cost of a front. A column cannot if more of it is better.
 bool can_be_cost(const Column& column);
 
-/// Returns the number in the text of `--within`, in the unit of the error. Throws Error for an invalid text, and for
-/// several scenes, whose best settings may differ.
+/// Returns the number in the text of `--within`, which is in the unit of the error. Throws Error if the text is
+/// invalid, and if there are several scenes, whose best settings may differ.
 double read_bound(const Pareto& pareto, const std::string& within);
 
-/// Returns the complete setting with the least mean cost whose interval of the error satisfies `bound` at its worse
-/// end: the upper end, or the lower end if more is better. Of settings with equal cost it takes the one with the better
-/// error. Returns null if there is none; settings without an interval (one seed, equal values) are never chosen.
+/// Returns the cheapest complete setting whose interval of the error satisfies `bound` at its worse end. The worse end
+/// is the upper one, or the lower one if more is better. Of several settings with this cost, returns the one with the
+/// best error. Returns null if there is none. Settings without an interval (one seed, or equal values) are never
+/// chosen.
 const Setting* cheapest_within(const Pareto& pareto, double bound);
 
-/// Returns the complete setting whose interval of the error has the best worse end, at any cost; null if none has an
-/// interval.
+/// Returns the complete setting whose interval of the error has the best worse end. The cost is ignored. Returns null
+/// if no setting has an interval.
 const Setting* best_bounded(const Pareto& pareto);
 
 }  // namespace palpate

@@ -24,7 +24,7 @@ Scale scale_of(const Pareto& pareto, const Column& key, Field field) {
   return readable_scale(key.unit, means);
 }
 
-/// Returns the least and the largest number of units of the settings with a value.
+/// Returns the least and the largest number of units, over the settings that have a value.
 std::pair<std::size_t, std::size_t> seeds_of(const Pareto& pareto) {
   std::size_t fewest = kEnoughUnits;
   std::size_t most = 0;
@@ -50,7 +50,7 @@ struct PlotAxis {
   double high = 1.0;
   bool logarithmic = false;
 
-  /// Returns "mean low high". Ends at or below 0 are clipped on a logarithmic axis.
+  /// Returns "mean low high". On a logarithmic axis, ends of the interval that are not positive are clipped.
   std::string columns(const MeanEstimate& estimate) const {
     const MeanInterval ends = interval_or_mean(estimate);
     const auto clipped = [&](double value) { return logarithmic ? std::max(value, low) : value; };
@@ -93,7 +93,7 @@ PlotAxis plot_axis(const Pareto& pareto, const Column& key, Field field, const s
   return axis;
 }
 
-constexpr double kKeyLeft = 0.635;  // share of the picture's width
+constexpr double kKeyLeft = 0.635;  // left edge of the key, as a share of the picture's width
 
 /// Colours of the fronts, one per scene.
 constexpr std::array<const char*, 5> kFrontColours{"#0b5394", "#00795a", "#7a3e9d", "#8c6d46", "#404040"};
@@ -101,9 +101,9 @@ constexpr const char* kChosenColour = "#c1440e";
 
 const char* front_colour(const Setting& setting) { return kFrontColours[setting.scene % kFrontColours.size()]; }
 
-/// Returns clauses for the key: number and name of each setting on the front and of the chosen one.
+/// Returns the clauses for the key: number and name of each setting on the front, and those of the chosen setting.
 std::vector<std::string> named_settings(const Pareto& pareto, const Setting* chosen) {
-  constexpr std::size_t kLongest = 48;  // number of letters that fit beside the plot
+  constexpr std::size_t kLongest = 48;  // number of letters that fit next to the plot
   constexpr std::size_t kMostLines = 26;
   std::vector<std::string> out;
   int left_out = 0;
@@ -209,7 +209,7 @@ struct PlotScript {
   std::string clauses;
 
   void plot(const std::string& clause) { clauses += (clauses.empty() ? "plot " : ", \\\n  ") + clause; }
-  /// Adds a data block and the clauses that use it; nothing if `lines` is empty.
+  /// Adds a data block and the clauses that use it. Adds nothing if `lines` is empty.
   void draw(const std::string& name, const std::string& lines, const std::vector<std::string>& uses) {
     if (lines.empty()) return;
     text += fmt::format("${} << END\n{}END\n", name, lines);
@@ -217,7 +217,7 @@ struct PlotScript {
   }
 };
 
-/// Returns the settings of title, axes, margins and key.
+/// Returns the gnuplot settings of title, axes, margins and key.
 std::string frame_settings(const Pareto& pareto, const std::string& title, const PlotAxis& x, const PlotAxis& y) {
   const std::string error =
       fmt::format("mean {}{}", y.scale.title(pareto.error.name), pareto.more_is_better() ? " (more is better)" : "");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Output of a Pareto front: a table, rows for programs, a gnuplot script, and texts about one setting.
+// Output of a Pareto front: a table, rows for programs, a gnuplot script, and texts about a single setting.
 #pragma once
 
 #include "analysis/pareto.hpp"
@@ -9,17 +9,20 @@
 
 namespace palpate {
 
-/// Returns the number of units of the settings: "20 seeds", "18 to 20 seeds"; jobs if the seed is not swept.
+/// Returns the number of units of the settings: "20 seeds", "18 to 20 seeds". If the seed is not swept, the units are
+/// jobs.
 std::string seeds_words(const Pareto& pareto);
 
-/// Returns a table with one line per setting in readable units, numbers of the front, and remarks.
+/// Returns a table with one line per setting in readable units, the numbers on the front, and remarks.
 std::string pareto_table(const Pareto& pareto);
 
-/// Returns one row per setting: number on the front, keys, counts of jobs, means and ends of the intervals in SI units.
+/// Returns one row per setting. It has the number on the front, keys, counts of jobs, means, and ends of the intervals,
+/// in SI units.
 std::vector<Row> pareto_rows(const Pareto& pareto);
 
-/// Returns a gnuplot script without terminal and output: every setting with its intervals, the front as a numbered step
-/// line, the names of its settings, `bound` (optional) as a line, and `chosen` (may be null) as a mark.
+/// Returns a gnuplot script without the settings of terminal and output. It draws every setting with its intervals, the
+/// front as a numbered step line, and the names of the settings on the front. `bound` (optional) becomes a line, and
+/// `chosen` (may be null) becomes a mark.
 std::string pareto_script(const Pareto& pareto, const std::string& title, const std::optional<double>& bound,
                           const Setting* chosen);
 
@@ -27,7 +30,7 @@ std::string pareto_script(const Pareto& pareto, const std::string& title, const 
 inline constexpr int kParetoWidth = 1300;
 inline constexpr int kParetoHeight = 760;
 
-/// Returns the error or the cost of a setting: "nlpd 4.31 [4.02, 4.60]".
+/// Returns the error or the cost of a setting as text: "nlpd 4.31 [4.02, 4.60]".
 std::string error_words(const Pareto& pareto, const Setting& setting);
 std::string cost_words(const Pareto& pareto, const Setting& setting);
 

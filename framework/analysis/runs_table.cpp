@@ -29,7 +29,7 @@ using State = RunStatus::State;
 
 constexpr const char* kIou = "footprint_iou";
 
-/// Returns up to three different names, else "N `noun`".
+/// Returns the names if there are at most three different ones, else "N `noun`".
 std::string in_short(const std::vector<std::string>& names, const char* noun) {
   constexpr std::size_t kShown = 3;
   std::vector<std::string> out;
@@ -55,7 +55,7 @@ std::string shapes_in(const Row& config) {
   }
 }
 
-/// Returns the values of a swept key; "" if the key is not swept.
+/// Returns the values of a swept key as text. Returns "" if the key is not swept.
 std::string swept_at(const Sweep& sweep, const char* key) {
   const auto found = std::find(sweep.keys.begin(), sweep.keys.end(), key);
   if (found == sweep.keys.end()) return {};
@@ -82,7 +82,7 @@ std::string swept_words(const Sweep& sweep) {
   return fmt::format("{}", fmt::join(out, ", "));
 }
 
-/// Returns whether scores of a caller chose a tap, instead of the config's acquisition.
+/// Returns whether a calling program chose a tap by its scores, instead of the config's acquisition.
 bool by_callers_scores(const fs::path& directory, const Row& config) {
   if (config.text("backend.type") != "caller") return false;
   const std::vector<Row> taps = read_run_record(directory).taps;
@@ -102,7 +102,7 @@ void add_run(ListedRecord& out, const fs::path& directory, const Row& config) {
   row.add("strategy", text_or_null(first_of({config.text("backend.label"), by_caller, strategy_of(origins, config)})));
   row.add("scene", text_or_null(scene_of(origins, config)));
   const std::optional<Row> summary = read_summary(directory);
-  // Taps are counted only for runs that have not ended: a summary has their number.
+  // Taps are counted only for runs that have not ended, because the summary of a run has the number.
   const RunStatus status = summary ? read_ending(directory) : read_status(directory);
   row.add("taps", summary ? summary->number("taps").value_or(0.0) : status.taps);
   const auto add_error = [&](const std::string& field) {
@@ -120,7 +120,7 @@ void add_sweep(ListedRecord& out, const fs::path& directory, const Row& config) 
   Row& row = out.row;
   row.add("name", text_or_null(sweep_name(sweep)));
   row.add("begun", text_or_null(begun_text(directory)));
-  // Keys that are not swept have the same values in all jobs, so the first job stands for all.
+  // Keys that are not swept have the same value in all jobs, so it suffices to read the first job.
   const fs::path first = job_directory(sweep, sweep.jobs.front());
   const Origins origins = recorded_origins(first);
   const Row job = is_there(first / "config.yaml") ? read_settings(first) : config;
@@ -169,7 +169,7 @@ std::vector<Row> rows_where(const std::vector<ListedRecord>& records, const Cond
       for (const auto& field : part->fields) known.push_back(field.first);
     }
   }
-  // Fields of the summary are known names, also for runs that have not ended.
+  // The fields of the summary are valid names even for runs that have not ended.
   for (const RecordField& field : summary_fields()) known.push_back(field.name);
   std::sort(known.begin(), known.end());
   known.erase(std::unique(known.begin(), known.end()), known.end());
@@ -209,7 +209,7 @@ void add_differences(std::vector<ListedRecord>& records) {
 std::string runs_table(const std::vector<Row>& rows) {
   if (rows.empty()) return {};
   std::vector<double> errors;
-  std::set<std::string> metrics;  // two if some runs tap from above and others from any side
+  std::set<std::string> metrics;  // There are two metrics if some runs tap from above and others from any side.
   for (const Row& row : rows) {
     const std::string metric = main_error({row});
     const std::optional<double> error = row.number(metric);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The table of `palpate list`: runs and sweeps, one line each. For a run that has ended, config and summary are read,
-// but no taps: a folder may hold hundreds of runs.
+// The table of `palpate list`, with one line per run or sweep. A folder may hold hundreds of runs. For a run that has
+// ended, the list therefore reads only the config and the summary, but no taps.
 #pragma once
 
 #include "record/distinguishing_settings.hpp"
@@ -15,28 +15,31 @@ namespace palpate {
 
 /// A run or a sweep in the list.
 struct ListedRecord {
-  /// Fields `name`, `begun`, `strategy`, `scene` and `directory`; for a run `taps`, errors and `state`; for a sweep
-  /// `jobs`, `jobs_done`, `jobs_failed` and `jobs_running`. Unknown values are null.
+  /// Fields that are shown. All records have `name`, `begun`, `strategy`, `scene` and `directory`. A run also has
+  /// `taps`, errors and `state`; a sweep also has `jobs`, `jobs_done`, `jobs_failed` and `jobs_running`. Unknown values
+  /// are null.
   Row row;
-  Row beside;  ///< further names for conditions: fields of the summary, then keys of the config
+  Row beside;  ///< further fields for conditions: fields of the summary, and keys of the config that the summary lacks
   RecordedSettings config;
   std::string swept;  ///< swept keys of a sweep: "seed (30), acquisition (2)"
 };
 
-/// Reads the run or sweep in `directory`. Strategy and scene have the name of the group in the config; otherwise the
-/// type of the acquisition and the shapes of the objects. Throws Error for a damaged record.
+/// Reads the run or sweep in `directory`. Strategy and scene have the name of their group in the config. Without a
+/// group, they are described by the type of the acquisition and the shapes of the objects. Throws Error for a damaged
+/// record.
 ListedRecord list_record(const std::filesystem::path& directory);
 
-/// Adds to each row `apart`, the differences from other rows with the same name: swept keys, then
-/// distinguishing_settings(), among runs or among sweeps (configs of sweeps have no defaults); null for no difference.
-/// Moves the configs out of `records`.
+/// Adds the field `apart` to each row: the differences from other records with the same name, or null if there are
+/// none. The differences are the swept keys and the distinguishing_settings(). Runs are compared with runs and sweeps
+/// with sweeps, because configs of sweeps lack the default values. Moves the configs out of `records`, which then have
+/// none.
 void add_differences(std::vector<ListedRecord>& records);
 
-/// Returns the rows of the records that satisfy `where`. A name that only other records have is null. Throws Error for
-/// a name that no record has.
+/// Returns the rows of the records that satisfy `where`. In a record that lacks a name which other records have, the
+/// name is null. Throws Error for a name that no record has.
 std::vector<Row> rows_where(const std::vector<ListedRecord>& records, const Condition& where);
 
-/// Returns the rows below a line of titles; "" without rows.
+/// Returns a line of titles and one line per row. Returns "" if there are no rows.
 std::string runs_table(const std::vector<Row>& rows);
 
 }  // namespace palpate

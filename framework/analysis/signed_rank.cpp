@@ -13,11 +13,12 @@ namespace {
 struct Difference {
   double size = 0.0;
   bool higher = false;
-  double rounding = 0.0;         ///< possible rounding error of the size
-  std::size_t doubled_rank = 0;  ///< twice the rank, a whole number also for ties, which share their mean rank
+  double rounding = 0.0;         ///< bound of the rounding error of `size`
+  std::size_t doubled_rank = 0;  ///< twice the rank, which is a whole number even for ties; ties have their mean rank
 };
 
-/// Sets the ranks of differences that are sorted by size. Returns the sum of t^3 - t over the sets of t ties.
+/// Sets the ranks of differences, which must be sorted by size. Returns the sum of t^3 - t over all sets of equal
+/// sizes, where t is the number of elements of the set.
 double rank(std::vector<Difference>& sorted) {
   double ties = 0.0;
   for (std::size_t begin = 0; begin < sorted.size();) {
@@ -35,7 +36,7 @@ double rank(std::vector<Difference>& sorted) {
 }
 
 /// Returns the probability that a rank sum is at most `doubled_sum` / 2 if every sign is random. The distribution is
-/// built up rank by rank.
+/// computed rank by rank.
 double share_at_most(const std::vector<Difference>& ranked, std::size_t doubled_sum) {
   std::vector<double> share(doubled_sum + 1, 0.0);
   share[0] = 1.0;
@@ -75,7 +76,7 @@ SignedRank signed_rank_test(const std::vector<double>& first, const std::vector<
   out.effect = (out.rank_sum_higher - out.rank_sum_lower) / sum;
   out.exact = ranked.size() <= kExactSignedRanks;
   if (out.exact) {
-    // Both tails of the symmetric distribution are equal; at a sum in the middle they overlap.
+    // The two tails of the symmetric distribution are equal. If the sum is in the middle, they overlap.
     out.p = std::min(1.0, 2.0 * share_at_most(ranked, std::min(higher, lower)));
     return out;
   }

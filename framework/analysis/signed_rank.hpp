@@ -8,34 +8,35 @@
 
 namespace palpate {
 
-/// Number of nonzero differences up to which the distribution of the rank sum is computed exactly.
+/// Largest number of nonzero differences for which the distribution of the rank sum is computed exactly.
 inline constexpr std::size_t kExactSignedRanks = 300;
 
-/// Result of the test of first - second.
+/// Result of the test of the differences first - second.
 struct SignedRank {
-  std::size_t higher = 0;  ///< pairs whose first value is larger
-  std::size_t equal = 0;   ///< pairs with equal values, which ranks and p ignore
+  std::size_t higher = 0;  ///< number of pairs whose first value is larger
+  std::size_t equal = 0;   ///< number of pairs with equal values, which ranks and p ignore
   std::size_t lower = 0;
-  double rank_sum_higher = 0.0;  ///< sum of the ranks of the absolute differences of the higher pairs; ties share their
-                                 ///< mean rank
+  /// Sum of the ranks of the absolute differences, over the pairs in `higher`. Ties have their mean rank.
+  double rank_sum_higher = 0.0;
   double rank_sum_lower = 0.0;
-  std::optional<double> p;  ///< two-sided; 1 if all pairs are equal, nullopt without pairs
+  std::optional<double> p;  ///< two-sided p; 1 if all pairs are equal, nullopt if there are no pairs
   bool exact = true;
   /// Matched-pairs rank-biserial correlation (Kerby 2014, The simple difference formula): the difference of the two
-  /// rank sums divided by their sum. It is 1 if the first is never lower, -1 if never higher, and nullopt if all pairs
-  /// are equal.
+  /// rank sums divided by their sum. It is 1 if the first value is never lower, -1 if it is never higher, and nullopt
+  /// if all pairs are equal.
   std::optional<double> effect;
 };
 
-/// Tests finite values that are paired by index; both vectors have the same length. Differences below kRounding of the
-/// values count as equal. Up to kExactSignedRanks differences p is exact, also with ties, by the distribution of the
-/// rank sum under random signs. Beyond, it is the normal approximation with the variance for ties, without continuity
-/// correction (Hollander, Wolfe and Chicken 2014, Nonparametric statistical methods, section 3.1).
+/// Tests finite values that are paired by index. Both vectors must have the same length. Differences below kRounding
+/// times the values count as equal. Up to kExactSignedRanks differences, p is computed exactly from the distribution of
+/// the rank sum under random signs, even if there are ties. With more differences, p is the normal approximation, with
+/// the variance for ties and without continuity correction (Hollander, Wolfe and Chicken 2014, Nonparametric
+/// statistical methods, section 3.1).
 SignedRank signed_rank_test(const std::vector<double>& first, const std::vector<double>& second);
 
-/// Returns the p of several tests, adjusted by Holm's method, in the given order. Whichever hypotheses are true,
-/// rejecting all tests below level a rejects a true one with probability at most a (Holm 1979, A simple sequentially
-/// rejective multiple test procedure).
+/// Returns the p values of several tests, adjusted by Holm's method, in the given order. If all tests with an adjusted
+/// p below a are rejected, the probability of rejecting any true hypothesis is at most a (Holm 1979, A simple
+/// sequentially rejective multiple test procedure).
 std::vector<double> holm_adjusted(const std::vector<double>& p);
 
 }  // namespace palpate

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Means of clustered samples with Student's interval.
+// Means of clustered samples with Student's t interval.
 #pragma once
 
 #include "record/quantiles.hpp"
@@ -20,18 +20,19 @@ struct MeanInterval {
 /// (jobs with the same seed form a cluster). No cluster is empty.
 using Clusters = std::vector<std::vector<double>>;
 
-/// Returns the means of the clusters in their order. The mean of equal values is their exact value.
+/// Returns the means of the clusters in their order. If all values of a cluster are equal, their mean is exactly this
+/// value.
 std::vector<double> cluster_means(const Clusters& clusters);
 
-/// Relative tolerance of equality: values that differ by less than this share of the largest value are equal, so that
-/// rounding decides no rank and no interval.
+/// Relative tolerance of equality. Values that differ by less than this share of the largest value count as equal, so
+/// that rounding affects neither ranks nor intervals.
 inline constexpr double kRounding = 1e-12;
 
 /// The mean of a sample with a two-sided 95 % interval of the true mean.
 struct MeanEstimate {
   std::size_t count = 0;     ///< number of values
   std::size_t clusters = 0;  ///< number of clusters, which decides the width of the interval
-  double mean = 0.0;         ///< over all values; 0 for no values
+  double mean = 0.0;         ///< mean of all values; 0 if there are none
   std::optional<MeanInterval> interval;
 };
 
@@ -40,18 +41,18 @@ struct MeanEstimate {
 /// them.
 std::vector<double> cluster_influences(const Clusters& clusters, double mean);
 
-/// Returns whether the means of all clusters are equal within kRounding. Equal means have no interval, however many
-/// they are: they show no spread. `scale` is the largest absolute value of the numbers from which the values were
-/// computed, if larger than the values themselves (differences of large numbers).
+/// Returns whether the means of all clusters are equal within kRounding. A sample with equal means has no interval,
+/// however large it is, because it shows no spread. `scale` is the largest absolute value of the numbers from which the
+/// values were computed. It matters if the values are differences of large numbers.
 bool all_equal(const Clusters& clusters, double scale = 0.0);
 
-/// Returns the mean of finite values, in which each value has the same weight, with Student's interval for clusters - 1
-/// degrees of freedom. The standard error is that of a ratio estimator (Cochran 1977, Sampling techniques, section
-/// 9A.1). One cluster, or clusters that are all_equal(), have no interval.
+/// Returns the mean of finite values, in which each value has the same weight. The interval is Student's t with one
+/// degree of freedom less than there are clusters. The standard error is that of a ratio estimator (Cochran 1977,
+/// Sampling techniques, section 9A.1). One cluster, or clusters that are all_equal(), have no interval.
 MeanEstimate estimate_mean(const Clusters& clusters, double scale = 0.0);
 
-/// Returns the factor of the standard error in that interval: 12.706 for one degree of freedom, 1.960 in the limit.
-/// `degrees` >= 1.
+/// Returns the number by which the standard error is multiplied for the interval of estimate_mean(): 12.706 for one
+/// degree of freedom, 1.960 in the limit. `degrees` must be at least 1.
 double student_factor(std::size_t degrees);
 
 /// Returns the quantile of the standard normal distribution for a probability between 0 and 1.

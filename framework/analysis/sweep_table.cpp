@@ -23,19 +23,19 @@ namespace {
 /// Numbers of a group before they are formatted.
 struct SweepTableRow {
   std::string name;
-  std::size_t scene = 0;  ///< index of its scene
+  std::size_t scene = 0;  ///< index of the group's scene
   int runs = 0;
   int without_contact = 0;
   int found = 0;
   int failed = 0;
   bool is_initial_known = false;
-  std::vector<double> object_taps_rest, object_taps_all, rmse, iou;  ///< of the done jobs, ascending
+  std::vector<double> object_taps_rest, object_taps_all, rmse, iou;  ///< values of the done jobs, ascending
 
   /// Returns the sorting key within a scene: the median error, infinite for a group without an error.
   double median_rmse() const { return rmse.empty() ? std::numeric_limits<double>::infinity() : quantile(rmse, 0.5); }
 };
 
-/// Returns "5.4 (4.5-6.3)": median, 10 % and 90 % quantile.
+/// Returns "5.4 (4.5-6.3)": the median, and the 10 % and 90 % quantiles.
 std::string spread(const std::vector<double>& values, const Scale& scale) {
   if (values.empty()) return "-";
   return fmt::format("{} ({}-{})", scale.number(quantile(values, 0.5)), scale.number(quantile(values, 0.1)),
@@ -45,8 +45,9 @@ std::string spread(const std::vector<double>& values, const Scale& scale) {
 SweepTableRow row_of(const JobGroup& group, const std::string& error,
                      const std::function<std::optional<int>(std::size_t job)>& initial_taps) {
   SweepTableRow out;
-  constexpr std::size_t kMostAsked = 3;  // jobs that are tried, as a config may be damaged
-  std::optional<int> initial;            // number of initial taps, equal for all jobs of a group
+  // Largest number of jobs whose configs are tried; more than one, because a config may be damaged.
+  constexpr std::size_t kMostAsked = 3;
+  std::optional<int> initial;  // number of initial taps, equal for all jobs of a group
   for (std::size_t i = 0; i < std::min(kMostAsked, group.jobs.size()) && !initial; ++i)
     initial = initial_taps(static_cast<std::size_t>(group.jobs[i].job->index));
   for (const auto& [job, row] : group.jobs) {
@@ -86,7 +87,7 @@ Table table_of(const std::vector<SweepTableRow>& rows, const std::string& metric
   const Scale error = readable_scale(unit_of_column(metric), medians, 2);
   const Scale share{"", 1.0, 2};
   const Scale count{"", 1.0, 0};
-  // Long names move to the end of the lines, so that the numbers fit a screen.
+  // Long names are moved to the end of the lines, so that the numbers fit on a screen.
   constexpr std::size_t kLongest = 32;
   Table table;
   for (const SweepTableRow& row : rows) {

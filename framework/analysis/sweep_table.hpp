@@ -11,9 +11,10 @@
 
 namespace palpate {
 
-/// Returns one line per group of all keys that vary except the seed: starts without contact, medians and spreads of
-/// taps on the object, RMSE and IoU. Groups of a scene stand together, sorted by median RMSE. `initial_taps` returns
-/// the number of initial taps of a job, which may be swept; nullopt if unknown. Returns "" if no job has ended.
+/// Returns one line per group of jobs; all keys that vary except the seed form the groups. A line has the number of
+/// starts without a contact, medians and quantiles of object taps, RMSE and IoU. The groups of a scene are adjacent and
+/// sorted by their median RMSE. `initial_taps` returns the number of initial taps of a job, which may be a swept key.
+/// It returns nullopt if the number is unknown. Returns "" if no job has ended.
 std::string sweep_table(const Sweep& sweep, const std::vector<Row>& results,
                         const std::function<std::optional<int>(std::size_t job)>& initial_taps);
 

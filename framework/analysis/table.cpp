@@ -47,7 +47,7 @@ std::string Table::text() const { return aligned(cells(), sides("l", "r")); }
 
 std::string Table::markdown() const {
   std::string out;
-  // A '|' would end a cell.
+  // An unescaped '|' would end a cell.
   for (const auto& cells : lines([](const std::string& text) { return boost::replace_all_copy(text, "|", "\\|"); })) {
     const std::string rule = out.empty() ? "|" + sides("---|", "---:|") + "\n" : "";
     out += fmt::format("| {} |\n{}", fmt::join(cells, " | "), rule);

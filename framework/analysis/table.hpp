@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The table model of all outputs: text for terminals, Markdown, LaTeX, rows for CSV and JSON, cells for pages.
+// The table model of all outputs: text for terminals, Markdown, LaTeX, rows for CSV and JSON, and cells for pages.
 #pragma once
 
 #include "record/row.hpp"
@@ -12,8 +12,8 @@
 
 namespace palpate {
 
-/// A table with cells for people, each under a title, and fields for programs, each with a name. All rows show the same
-/// titles in the same order.
+/// A table with cells for display, each with a title, and fields for programs, each with a name. All rows must have the
+/// same titles in the same order.
 ///
 ///       table.add_row();
 ///       table.show("failed", "2", Table::Kind::count);
@@ -28,21 +28,22 @@ class Table {
   };
 
   void add_row() { rows_.emplace_back(), next_ = 0; }
-  /// Adds a cell for people to the last row.
+  /// Adds a displayed cell to the last row.
   void show(const std::string& title, std::string cell, Kind kind = Kind::number);
-  /// Adds a field for programs to the last row: a scalar, or an optional scalar with null for none.
+  /// Adds a field for programs to the last row. The value is a scalar, or an optional scalar that becomes null if it is
+  /// empty.
   template <class Value>
   void store(std::string name, Value value) {
     rows_.back().add(std::move(name), std::move(value));
   }
 
-  /// Returns the fields for programs, one row per row of the table, in SI units.
+  /// Returns the fields for programs: one row per row of the table, in SI units.
   const std::vector<Row>& rows() const { return rows_; }
   Row& last_row() { return rows_.back(); }
 
-  /// Returns the titles, then the cells of each row, without hidden columns.
+  /// Returns the titles, followed by the cells of each row. Hidden columns are left out.
   std::vector<std::vector<std::string>> cells() const;
-  /// Returns the number of text columns before the first other column.
+  /// Returns the number of text columns at the beginning of the table.
   std::size_t text_columns() const { return std::min(sides("l", "r").find('r'), columns_.size()); }
   /// Returns a line of titles and one line per row, with aligned columns.
   std::string text() const;
@@ -59,9 +60,9 @@ class Table {
   };
 
   bool is_hidden(const Column& column) const;
-  /// Returns the titles, then the cells of each row, both after `escape`, without hidden columns.
+  /// Returns the titles, followed by the cells of each row, all converted by `escape`. Hidden columns are left out.
   std::vector<std::vector<std::string>> lines(std::string (*escape)(const std::string&)) const;
-  /// Returns `left` or `right` for each column that is not hidden, as one string.
+  /// Returns a string with `left` or `right` for each column that is not hidden.
   std::string sides(const std::string& left, const std::string& right) const;
 
   std::vector<Column> columns_;
@@ -69,8 +70,8 @@ class Table {
   std::size_t next_ = 0;  ///< index of the next cell's column
 };
 
-/// Returns `text` with LaTeX's special characters escaped. A '[' at the beginning is put in braces: LaTeX would read it
-/// as an argument of the line break before it.
+/// Returns `text` with LaTeX's special characters escaped. A '[' at the beginning is put in braces, because LaTeX would
+/// otherwise read it as an argument of the preceding line break.
 std::string latex_text(const std::string& text);
 
 }  // namespace palpate

@@ -19,20 +19,20 @@ namespace {
 constexpr std::size_t kFewest = 10;  // least number of contacts
 constexpr double kMillimetre = 1e-3;
 constexpr double kMillimetrePerMinute = 1e-3 / 60.0;
-/// Height above the highest object, metres, from which a false contact can be reported.
+/// Largest height of a false contact above the highest object, metres.
 constexpr double kAbove = 0.1;
-/// At most one in this many contacts of a run may be far from its scene. More false contacts would be implausible: the
-/// scene does not stand as its config says.
+/// At most one in kFar contacts of a run may be far from its scene. A larger share of false contacts would be
+/// implausible. The scene then differs from its config.
 constexpr std::size_t kFar = 5;
-/// At most one in this many contacts may be below the surface, within an object: false contacts occur above.
+/// At most one in kThrough contacts may be inside an object, because false contacts occur above the surface.
 constexpr std::size_t kThrough = 20;
-/// Largest offset beyond the assumed effects, metres; a larger one means another height of the desk. With the paper's
-/// motion, the offset of a perfect arm is 14 mm.
+/// Largest offset in addition to that of the assumed effects, metres. A larger offset shows that the desk has another
+/// height. With the paper's motion, the offset of a perfect arm is 14 mm.
 constexpr double kMostOffset = 0.03;
-/// Least share of events that the motions must reveal, so that a rate can be estimated.
+/// Least share of its events that an effect must show in these motions. With less, its rate cannot be estimated.
 constexpr double kShown = 0.1;
 
-/// Effects that these taps cannot estimate, at their default values: those of an arm of Baxter's class.
+/// Effects that these taps cannot estimate, with default values for an arm of Baxter's class.
 constexpr std::pair<const char*, const char*> kAssumed[] = {{"force_noise", "{deviation: 1.5 N}"},
                                                             {"force_drift", "{per_metre: 10 N/m}"},
                                                             {"stiffness", "{object: 1500 N/m}"},
@@ -60,7 +60,7 @@ struct CalibrationRun {
   const RecordedRun& recording;
   std::unique_ptr<const Scene> scene;
   SimulatedRerun rerun;
-  SimulatedRerun::Result made;  ///< with the assumed effects
+  SimulatedRerun::Result made;  ///< result of simulating the taps with the assumed effects
   std::size_t contacts = 0;
 
   CalibrationRun(const RunEnvironment& environment, const RecordedRun& from)
@@ -102,7 +102,7 @@ class Calibrated {
       lines += fmt::format("  {}: {}  # {}\n", effect, value, what);
       effects.at(effect) = parse_yaml(value, "calibrate");
     };
-    // The effect's offset is the offset of the first tap.
+    // The offset of the effect is the offset at the first tap.
     const double drift = fit_.drift ? fit_.drift->value : 0.0;
     line("height_offset",
          fmt::format("{{constant: {:.4g} mm, drift: {:.4g} mm/min}}",
@@ -132,7 +132,7 @@ class Calibrated {
   }
 
  private:
-  /// Throws Error for a run whose scene does not stand as its config says.
+  /// Throws Error for a run whose scene differs from its config.
   void check_scenes() const {
     constexpr const char* kRemedy = "use taps on a scene that stands as in its config";
     std::size_t next = 0;
@@ -186,8 +186,8 @@ class Calibrated {
         (variance / static_cast<double>(requests.size()) - simulated_variance_) / static_cast<double>(runs_.size());
   }
 
-  /// Adds the rate with which the simulator reveals as many events as were recorded. The revealed share is linear in
-  /// the rate, between its values at rates 0 and 1.
+  /// Adds the rate at which the simulator shows as many events as the arm's record. The share of shown events is linear
+  /// in the rate, so its values at the rates 0 and 1 determine it.
   template <class Line, class Shown>
   void rate(const Line& line, const char* effect, const Estimated& seen, const std::string& what, const Shown& shown) {
     double none = 0.0;
@@ -207,7 +207,7 @@ class Calibrated {
                      100.0 * (all - none)));
   }
 
-  /// Returns the expected error of a height, metres, beyond the assumed effects.
+  /// Returns the expected error of a height in addition to that of the assumed effects, metres.
   double offset_at(double elapsed) const {
     return fit_.offset.value + (fit_.drift ? fit_.drift->value * (elapsed - fit_.mean_elapsed) : 0.0);
   }

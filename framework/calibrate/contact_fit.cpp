@@ -11,11 +11,11 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 constexpr double kNormal975 = 1.95996398454005423552;
-/// Largest value of twice the difference of log likelihoods within a 95 % interval (chi square with one degree of
+/// Twice the largest difference of log likelihoods within a 95 % interval (quantile of chi square with one degree of
 /// freedom).
 constexpr double kChiSquare95 = 3.84145882069412447634;
 
-constexpr double kLeastNoise = 5e-5;  // metres; bounds the likelihood, which would be infinite at 0
+constexpr double kLeastNoise = 5e-5;  // metres; without this bound the likelihood would be infinite at 0
 constexpr double kFinestPlace = 2.5e-4;
 constexpr double kFarthestPlace = 0.01;
 
@@ -28,7 +28,7 @@ Eigen::MatrixXd heights_around(const std::vector<KnownContact>& contacts, double
   Eigen::MatrixXd out(static_cast<Eigen::Index>(contacts.size()), places);
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     for (int k = 0; k < places; ++k) {
-      // The distance from the centre is Rayleigh distributed, with quantiles in closed form.
+      // The distance from the centre has a Rayleigh distribution, whose quantiles have a closed form.
       const int ring = k / kSpokes;
       const double radius = lateral * std::sqrt(-2.0 * std::log(1.0 - (ring + 0.5) / kRings));
       const double angle = 2.0 * kPi * ((k % kSpokes) + 0.5 * (ring % 2)) / kSpokes;
@@ -75,7 +75,7 @@ class ExpectationMaximisation {
   }
 
  private:
-  /// Returns the median error of the heights.
+  /// Returns the median error of the heights, where the fit starts.
   double start() const {
     Eigen::VectorXd off = measured_ - heights_.rowwise().mean();
     const auto middle = off.data() + off.size() / 2;
@@ -112,7 +112,7 @@ class ExpectationMaximisation {
     const double squares = ee - 2.0 * now.offset * e - 2.0 * now.drift * te + n * now.offset * now.offset +
                            2.0 * now.offset * now.drift * t + now.drift * now.drift * tt;
     now.noise = std::max(kLeastNoise, std::sqrt(std::max(0.0, squares) / n));
-    // One in a thousand contacts counts as false, because a share of 0 would stay 0.
+    // At least one in a thousand contacts counts as false, because expectation maximisation never leaves a share of 0.
     now.false_share =
         (static_cast<double>(measured_.size()) - n + 1e-3) / (static_cast<double>(measured_.size()) + 1.0);
   }

@@ -12,10 +12,10 @@ namespace palpate {
 namespace {
 
 constexpr int kDraws = 24;
-/// Standard deviation of a normal variable divided by its median absolute deviation.
+/// Ratio of the standard deviation of a normal variable to its median absolute deviation.
 constexpr double kOfNormal = 1.4826;
 
-/// Returns the median; 0 for no values.
+/// Returns the median, or 0 if there are no values.
 double median(std::vector<double> values) {
   if (values.empty()) return 0.0;
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -25,8 +25,9 @@ double median(std::vector<double> values) {
 
 /// Errors of all taps over all draws of the effects.
 struct RerunErrors {
-  std::vector<std::vector<double>> errors;  ///< of the heights of each tap, metres, one per draw with a contact
-  double failed = 0.0;                      ///< number of taps without a contact
+  /// errors of the heights in metres: one list per tap, with one error per draw that had a contact
+  std::vector<std::vector<double>> errors;
+  double failed = 0.0;  ///< number of taps without a contact
 };
 
 RerunErrors draw_taps(const RunEnvironment& environment, const Scene& scene, const PluginChoice& choice,

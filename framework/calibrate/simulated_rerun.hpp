@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Simulation of a run's recorded taps: the errors of their heights, and the share of failures.
+// Simulation of a run's recorded taps. The results are the errors of the heights and the share of failed taps.
 #pragma once
 
 #include "record/run_replay.hpp"
@@ -16,14 +16,15 @@ class SimulatedRerun {
 
   /// Errors of the taps over several draws of the effects.
   struct Result {
-    std::vector<double> error;     ///< per tap: median error of the height, metres; 0 without a contact
-    std::vector<double> variance;  ///< per tap: variance of the error by the median absolute deviation, square metres
-    double failed = 0.0;           ///< share of the taps
+    std::vector<double> error;  ///< median error of the height of each tap, metres; 0 for taps without a contact
+    /// variance of the error of each tap, computed from the median absolute deviation, square metres
+    std::vector<double> variance;
+    double failed = 0.0;      ///< share of failed taps
     double far_off = 0.0;     ///< share of the contacts whose error differs from `expected` by more than kOutlierError
-    double mean_error = 0.0;  ///< mean error of the other contacts
+    double mean_error = 0.0;  ///< mean error of all other contacts
   };
-  /// Simulates the taps with `effects`, in the format of `scene.effects`; every call uses the same draws. `expected`
-  /// has the expected error of each tap, by default its median.
+  /// Simulates the taps with `effects`, which have the format of `scene.effects`. Every call uses the same random
+  /// draws. `expected` has the expected error of each tap. By default, it is the median error of the tap.
   Result make(const Tree& effects, const std::vector<double>& expected = {}) const;
 
   static constexpr double kOutlierError = 0.01;  ///< metres

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The parts of the build that a command line needs besides `palpate` itself. The script ./palpate calls the program
-// with --needs before the other words, and builds these parts.
+// with --needs before the other words, and then builds these parts.
 #pragma once
 
 #include "cli/program.hpp"
@@ -10,9 +10,9 @@
 
 namespace palpate::cli {
 
-/// Collects the parts that a command needs. As a PluginSource it notes each plugin whose options are read. The
-/// functions do not throw, because the command itself reports an invalid config. Plugins named by other plugins become
-/// visible once the latter are built.
+/// Collects the parts that a command needs. As a PluginSource, this object notes each plugin whose options are read.
+/// The functions do not throw, because the command itself reports an invalid config. If a plugin names other plugins,
+/// these become known after the first plugin is built.
 class Needs final : public PluginSource {
  public:
   explicit Needs(Program& program) : program_(program) {}
@@ -21,21 +21,22 @@ class Needs final : public PluginSource {
   void whole() { whole_ = true; }
   /// Adds all plugins of this build.
   void every_plugin() { every_plugin_ = true; }
-  /// Adds both. The plugins of a sweep are known only after planning.
+  /// Adds palpate-whole and all plugins. A sweep needs all plugins, because its plugins are known only after planning.
   void everything() { whole_ = every_plugin_ = true; }
-  /// Adds the plugins of a config, including default ones. With `sweeps`, a config with a 'sweep:' block needs
-  /// everything.
+  /// Adds the plugins of a config, including those that the config chooses by default. If `sweeps` is set, a config
+  /// with a 'sweep:' block needs everything.
   void config(const std::string& file, const std::vector<std::string>& overrides, bool sweeps);
-  /// Adds the plugins of a run; everything for a sweep.
+  /// Adds the plugins of a run. A sweep needs everything.
   void record(const std::string& directory);
   void whole_and_record(const std::string& directory) {
     whole();
     record(directory);
   }
-  /// Adds the plugins that `palpate plugins` lists for "", KIND or KIND/NAME.
+  /// Adds the plugins that `palpate plugins` lists for the argument "", KIND or KIND/NAME.
   void listing(const std::string& what);
 
-  /// Prints the targets of the build, one per line; nothing for an installed program, which is complete.
+  /// Prints the build targets of the needed parts, one per line. Prints nothing in an installed program, which has all
+  /// parts.
   void print() const;
 
   /// Returns whether a plugin is not built, so that its options are unknown.

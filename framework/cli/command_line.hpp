@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The declaration of commands: name, arguments, examples, and the parts of the build that a command needs. CLI11 reads
-// the words of the command line into the variables that the declarations name.
+// The declaration of commands: name, arguments, examples, and the parts of the build that they need. CLI11 parses the
+// command line into the variables that the declarations name.
 #pragma once
 
 #include "cli/build_targets.hpp"
@@ -22,48 +22,49 @@ class Option;
 
 namespace palpate::cli {
 
-/// An option or positional argument of a command, and a rule for one.
+/// An option or positional argument of a command. A Rule configures one.
 using Argument = CLI::Option*;
 using Rule = std::function<void(CLI::Option&)>;
 
 Rule required();
-/// Shows in the help the default, which is the present value of the variable.
+/// Shows the default in the help. The default is the value that the variable has at the declaration.
 Rule with_default();
 Rule at_least(int least);
 Rule between(int least, int most);
 Rule one_of(const std::vector<std::string>& values);
-/// Reads several values from one word.
+/// Reads several values from one word, separated by commas.
 Rule comma_separated();
-/// Reads one value per occurrence of the option, which can be repeated.
+/// Reads one value per occurrence of the option. The option can then be repeated.
 Rule one_per_option();
-/// Lists the option below this heading in the help.
+/// Lists the option below this heading in the help text.
 Rule below(const std::string& heading);
-/// Rejects a command line that has the option without `other`.
+/// Rejects a command line that has this option but lacks `other`.
 Rule only_with(Argument other);
 Rule not_with(Argument other);
 
-/// A command under declaration.
+/// A command while it is being declared.
 class Command {
  public:
   using Rules = std::initializer_list<Rule>;
 
-  /// `finds_records`: whether a run or sweep that does not exist is an error.
+  /// `finds_records`: whether a run or sweep that does not exist causes an error.
   Command(CLI::App* app, bool finds_records) : app_(app), finds_records_(finds_records) {}
 
-  /// Adds an option (its name begins with a dash) or a positional argument. The help calls the value `of`. Defined for
-  /// text, whole numbers, optional ones, and lists of either.
+  /// Adds an option or a positional argument. The names of options begin with a dash. `of` is the name of the value in
+  /// the help. Values can be text, whole numbers, optional whole numbers or texts, and lists.
   template <class Value>
   Argument argument(const char* name, Value& value, const char* of, const std::string& help, Rules rules = {}) const;
   Argument flag(const char* name, bool& value, const std::string& help, Rules rules = {}) const;
 
-  /// Adds a required argument for a run or sweep, or for several. The variable gets directories: see find_record().
+  /// Adds a required argument that names a run or sweep, or several of them. The variable receives the directories, as
+  /// find_record() returns them.
   template <class Texts>
   void record(const char* name, Texts& directories, Wanted wanted, const std::string& help) const;
-  /// Adds a required argument for sweeps and runs that count as one sweep. The variable gets the words of the command
-  /// line: see find_records().
+  /// Adds a required argument that names sweeps and runs. They count as one sweep. The variable receives the words of
+  /// the command line, for find_records().
   void pooled_records(std::vector<std::string>& words) const;
 
-  /// Sets the example command lines of the help.
+  /// Sets the example commands in the help text.
   void examples(const std::vector<std::string>& lines) const;
 
  private:
@@ -74,12 +75,13 @@ class Command {
 /// The command line of the program.
 class CommandLine {
  public:
-  /// `is_query`: the caller wants completions or the parts that a command needs, and performs no command.
+  /// `is_query`: whether the program only answers a query, for completions or for the parts that a command needs. No
+  /// command is then performed.
   CommandLine(const Installation& installation, bool is_query);
   ~CommandLine();
 
-  /// Adds a command and returns it with its arguments, which live as long as this object. `function` performs the
-  /// command and returns the exit status; it may be a function that only `palpate-whole` has. `needed` adds the parts
+  /// Adds a command and returns it with its arguments. They live as long as this object. `function` performs the
+  /// command and returns the exit status. It may be a function that only `palpate-whole` has. `needed` adds the parts
   /// of the build that the command needs.
   template <class Arguments>
   std::pair<Command, Arguments&> add(const char* name, const char* help, int (*function)(Program&, const Arguments&),
@@ -91,7 +93,8 @@ class CommandLine {
     return {command, *arguments};
   }
 
-  /// Reads the words. Returns an exit status if that is all: after --help and --version. Throws Error, of kind usage.
+  /// Parses the words of the command line. Returns an exit status if nothing remains to be done, as after --help and
+  /// --version. Throws Error of kind `usage`.
   std::optional<int> parse(int argc, char** argv);
   int perform(Program& program) const { return chosen_.perform(program); }
   void need(Needs& needs) const { chosen_.need(needs); }
@@ -107,14 +110,14 @@ class CommandLine {
 
   std::unique_ptr<CLI::App> app_;
   bool is_query_;
-  Actions chosen_;  ///< of the command that the words name
+  Actions chosen_;  ///< actions of the command that the words name
 };
 
-/// Adds `named`, if there is such a command, else all commands, in the order of `--help`. To add all takes a tenth of
-/// the time of a short run.
+/// Adds the command `named`. If there is no such command, adds all commands in the order of `--help`. Adding all
+/// commands takes a tenth of the time of a short run.
 void add_commands(CommandLine& line, const std::string& named);
 
-/// For commands that need all of the program, or also all plugins, with any arguments.
+/// For commands that need the whole program, or the whole program and all plugins, with any arguments.
 constexpr auto kNeedsWhole = [](Needs& needs, const auto&) { needs.whole(); };
 constexpr auto kNeedsEverything = [](Needs& needs, const auto&) { needs.everything(); };
 

@@ -25,7 +25,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Returns the path of the table, next to results.csv. Each condition and each number of taps has its own file.
+/// Returns the path of the table, which is next to results.csv. Each condition and each number of taps has a separate
+/// file.
 fs::path table_file(const Sweep& sweep, const Comparison& comparison, const std::string& where) {
   std::string name = fmt::format("compare_{}_{}", slug(fmt::format("{}", fmt::join(comparison.by, "_"))),
                                  slug(comparison.metric.name));
@@ -33,7 +34,7 @@ fs::path table_file(const Sweep& sweep, const Comparison& comparison, const std:
   return sweep.directory / (name + where_suffix(where) + ".csv");
 }
 
-/// Returns the taps after which the jobs are compared, each once, in the order of the command line.
+/// Returns the points of the runs at which jobs are compared. Each appears once, in the order of the command line.
 std::vector<Checkpoint> occasions_of(const CompareArguments& arguments) {
   std::vector<Checkpoint> out;
   if (arguments.until) out.push_back(Checkpoint::once(field_name(*arguments.until)));
@@ -44,8 +45,8 @@ std::vector<Checkpoint> occasions_of(const CompareArguments& arguments) {
   return out;
 }
 
-/// Returns the parts of a comparison that the output format shows. Throws Error for options about pairs with a format
-/// that has no pairs.
+/// Returns the parts of a comparison that the output format shows. Throws Error if options about pairs are combined
+/// with a format that has no pairs.
 CompareExtent extent_of(const CompareArguments& arguments) {
   const bool pairs = arguments.format != "markdown" && arguments.format != "latex";
   for (const char* const option : {arguments.ratio ? "--ratio" : "", arguments.baseline ? "--baseline" : ""}) {
@@ -70,9 +71,9 @@ std::string rows_text(const std::vector<Comparison>& comparisons, const CompareA
   return out + "\n]\n";
 }
 
-/// Returns all comparisons: one per metric at the end of the jobs, or one per metric and number of taps. Returns
-/// nullopt after an interrupt. All are computed before the first is printed, so that an unknown metric gives an error
-/// and no output.
+/// Returns all comparisons. There is one per metric at the end of the jobs, or one per metric and number of taps.
+/// Returns nullopt after an interrupt. All comparisons are computed before the first is printed. An unknown metric
+/// therefore causes an error without any output.
 std::optional<std::vector<Comparison>> compare_all(const Program& program, const Sweep& sweep,
                                                    const CompareArguments& arguments) {
   const std::optional<Condition> where = Condition::of_command_line(arguments.where);
@@ -91,8 +92,8 @@ std::optional<std::vector<Comparison>> compare_all(const Program& program, const
     add(sweep_results(sweep), std::nullopt);
     return comparisons;
   }
-  // Invalid metrics are rejected before the computation. The condition is left out here, because its values do not
-  // exist yet.
+  // Invalid metrics are rejected before the computation. The condition is left out here, because its values are not
+  // computed yet.
   for (const std::string& metric : arguments.metrics) {
     if (arguments.until && metric == kReached) continue;
     palpate::compare(sweep, sweep_results(sweep),

@@ -7,13 +7,14 @@
 namespace palpate::cli {
 
 struct CompareArguments {
-  std::vector<std::string> records;  ///< words for sweeps and runs that count as one sweep: see find_records()
+  std::vector<std::string> records;  ///< words that name sweeps and runs, for find_records(); these count as one sweep
   std::vector<std::string> by;
   std::vector<std::string> metrics;
   std::optional<std::string> where;
   std::optional<std::string> baseline;
-  std::vector<int> at;               ///< numbers of taps; empty: the ends of the jobs
-  std::optional<std::string> until;  ///< COLUMN=VALUE, or the tap that reached the value
+  /// numbers of taps at which jobs are compared; if empty, jobs are compared at their ends
+  std::vector<int> at;
+  std::optional<std::string> until;  ///< COLUMN=VALUE: jobs are compared at the tap that reached this value
   bool ratio = false;
   std::string format = "text";
   std::optional<int> workers;

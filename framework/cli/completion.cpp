@@ -19,8 +19,8 @@ namespace {
 namespace fs = std::filesystem;
 using boost::starts_with;
 
-/// Returns the argument of `command` to which the word `last` belongs, after the word `previous`, or null. `command`
-/// has parsed all earlier words.
+/// Returns the argument of `command` to which the word `last` after the word `previous` belongs. Returns null if there
+/// is none. `command` must have parsed all earlier words.
 const CLI::Option* argument_of(const CLI::App& command, const std::string& previous, const std::string& last) {
   const auto with_value = [&](const std::string& word) {
     const CLI::Option* option = starts_with(word, "-") ? command.get_option_no_throw(word) : nullptr;
@@ -45,7 +45,7 @@ std::vector<Completion> options_of(const CLI::App& command) {
   return out;
 }
 
-/// Returns folders and YAML files.
+/// Returns the folders and YAML files that complete `typed`.
 std::vector<Completion> configs(const std::string& typed) {
   const std::string folder = typed.substr(0, typed.rfind('/') + 1);
   std::vector<Completion> out;
@@ -63,7 +63,7 @@ std::vector<Completion> configs(const std::string& typed) {
   return out;
 }
 
-/// Returns the runs, the sweeps or (for DIR) both in runs/.
+/// Returns the runs in runs/, the sweeps, or (for DIR) both.
 std::vector<Completion> records(const std::string& of) {
   std::vector<Completion> out;
   std::error_code none;
@@ -73,7 +73,7 @@ std::vector<Completion> records(const std::string& of) {
         if (of != "RUN") out.push_back({id.string(), "a sweep"});
       } else if (of != "SWEEP" && fs::exists(id / "config.yaml", none)) {
         bool ended = false;
-        catch_error([&] { ended = read_ending(id).end.has_value(); });  // a damaged record counts as not ended
+        catch_error([&] { ended = read_ending(id).end.has_value(); });  // A damaged record counts as not ended.
         out.push_back({id.string(), ended ? "a run, ended" : "a run, not ended"});
       }
     }
@@ -81,7 +81,7 @@ std::vector<Completion> records(const std::string& of) {
   return out;
 }
 
-/// Returns the plugin kinds and, if `names`, each plugin as KIND/NAME.
+/// Returns the plugin kinds. If `names` is set, also returns each plugin as KIND/NAME.
 std::vector<Completion> plugins_by_kind(const Program& program, bool names) {
   std::vector<Completion> out;
   for (const std::string& kind : PluginHost::kinds()) {
@@ -92,8 +92,8 @@ std::vector<Completion> plugins_by_kind(const Program& program, bool names) {
   return out;
 }
 
-/// Completes the value after the last comma. `values` are completions of the part without commas; the results are whole
-/// words.
+/// Completes the value after the last comma of `typed`. `values` are completions of the part after this comma. The
+/// results are whole words.
 std::vector<Completion> after_comma(const std::string& typed, std::size_t from, std::vector<Completion> values) {
   const auto comma = typed.rfind(',');
   if (comma == std::string::npos || comma < from) return values;
@@ -101,7 +101,7 @@ std::vector<Completion> after_comma(const std::string& typed, std::size_t from, 
   return values;
 }
 
-/// Completes a sweep's KEY=VALUES, where each value is completed as in KEY=VALUE.
+/// Completes KEY=VALUES of a sweep. Each value is completed like the value in KEY=VALUE.
 std::vector<Completion> axis(Program& program, const std::string& config, const std::string& typed) {
   const auto equals = typed.find('=');
   if (equals == std::string::npos) return complete_key(program, config, {}, typed);
@@ -111,7 +111,8 @@ std::vector<Completion> axis(Program& program, const std::string& config, const 
   return after_comma(typed, equals + 1 + bracket, std::move(out));
 }
 
-/// Returns completions according to the name of the value in the help. Files and free texts have none.
+/// Returns the completions for the value of an option, according to the value's name in the help. Files and free texts
+/// have no completions.
 std::vector<Completion> values_of(const CLI::App& command, const CLI::Option& option, const std::string& typed,
                                   Program& program) {
   std::vector<Completion> out;
@@ -146,7 +147,7 @@ std::vector<Completion> completions(CLI::App& app, Program& program, const std::
   } else {
     try {
       app.parse(std::vector<std::string>(words.rbegin() + 1, words.rend()));
-    } catch (const CLI::Error&) {  // the words typed so far may be incomplete
+    } catch (const CLI::Error&) {  // The words typed so far may be incomplete.
     }
     if (app.get_subcommands().empty()) return {};
     const CLI::App& command = *app.get_subcommands().front();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Shell completion of commands, options, configs, groups, keys, values, plugins and runs. The scripts in cli/shells
-// call the program each time the user presses Tab, and offer files if there is no completion.
+// call the program each time the user presses Tab. If there is no completion, they offer files.
 #pragma once
 
 #include "cli/program.hpp"
@@ -14,15 +14,15 @@ class App;
 
 namespace palpate::cli {
 
-/// A completion of a word.
+/// A possible completion of a word.
 struct Completion {
-  std::string word;     ///< the whole word; more may follow after '=', '.', '/' or ','
+  std::string word;     ///< the completed word; text may follow it after '=', '.', '/' or ','
   std::string meaning;  ///< one line; may be ""
 };
 
-/// Returns the completions of the last of `words`, the words after `palpate`. The last word may be empty or incomplete.
-/// Nothing is written, run or built, broken configs and plugins are skipped, and only the plugins whose options are
-/// needed are opened.
+/// Returns the completions of the last one of `words`. These are the words after `palpate`. The last word may be empty
+/// or incomplete. The function writes, runs and builds nothing. It skips broken configs and plugins, and opens only
+/// those plugins whose options it needs.
 std::vector<Completion> completions(CLI::App& app, Program& program, const std::vector<std::string>& words);
 
 }  // namespace palpate::cli

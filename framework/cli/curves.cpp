@@ -29,8 +29,9 @@ namespace fs = std::filesystem;
 
 constexpr std::array<const char*, 4> kExtensions{".csv", ".png", ".pdf", ".svg"};
 
-/// Returns the files to write: the given ones, or else one picture and one table next to results.csv. A PDF comes last,
-/// because all pictures of one name share a gnuplot script, and papers use the PDF.
+/// Returns the files to write: the files of -o, or else one picture and one table next to results.csv. A PDF comes
+/// last. All pictures with the same name share a gnuplot script, and the script that remains should be the one of the
+/// PDF, because papers use it.
 std::vector<fs::path> curve_files(const Sweep& sweep, const CurvesArguments& arguments,
                                   const std::vector<std::string>& by, const std::string& metric) {
   std::vector<fs::path> out(arguments.outputs.begin(), arguments.outputs.end());
@@ -63,7 +64,7 @@ double width_of(const CurvesArguments& arguments) {
   return width;
 }
 
-/// Writes the table and the pictures, and prints their names.
+/// Writes the table and the pictures, and prints the names of their files.
 void write_curves(const Sweep& sweep, const GroupCurves& made, const CurvesArguments& arguments,
                   const std::vector<fs::path>& files, double width) {
   const std::string title = sweep_name(sweep) + (arguments.where ? ", where " + *arguments.where : "");
@@ -78,7 +79,7 @@ void write_curves(const Sweep& sweep, const GroupCurves& made, const CurvesArgum
     const auto trouble = catch_error([&] { note = write_curves_figure(made, title, width, file); });
     const fs::path script = fs::path(file).replace_extension(".gnuplot");
     if (std::error_code none; fs::is_regular_file(script, none)) scripts.insert(script);
-    // Without -o, the table remains a result, so that a missing picture is not an error.
+    // Without -o, a missing picture is not an error, because the table is still a result.
     if (trouble && !arguments.outputs.empty()) throw *trouble;
     if (trouble) {
       print_message(fmt::format("no picture was drawn: {}\n", trouble->what()));

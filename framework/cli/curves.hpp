@@ -7,14 +7,14 @@
 namespace palpate::cli {
 
 struct CurvesArguments {
-  std::vector<std::string> records;  ///< words for sweeps and runs that count as one sweep: see find_records()
-  std::vector<std::string> by;       ///< empty: curve_keys() of the sweep
+  std::vector<std::string> records;  ///< words that name sweeps and runs, for find_records(); these count as one sweep
+  std::vector<std::string> by;       ///< keys of the groups; if empty, curve_keys() of the sweep
   std::string metric;                ///< "": main_error() of the results
   std::string against = "taps";
   std::optional<std::string> where;
-  std::vector<std::string> outputs;  ///< files; empty: one picture and one table next to results.csv
+  std::vector<std::string> outputs;  ///< files to write; if empty, one picture and one table next to results.csv
   std::optional<int> workers;
-  std::optional<std::string> width;  ///< of pictures, with its unit
+  std::optional<std::string> width;  ///< width of the pictures, with its unit
 };
 PALPATE_WHOLE int curves(Program& program, const CurvesArguments& arguments);
 

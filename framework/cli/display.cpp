@@ -22,8 +22,8 @@ std::string error_words(double metres) { return usual_scale(Unit::metre).quantit
 
 std::string share_text(const std::optional<double>& value) { return value ? fmt::format("{:.2f}", *value) : "-"; }
 
-/// Returns for example "error: 2.6 mm over the scene (expected 3.1 mm), 5.9 mm on the object; footprint IoU 1.00".
-/// Without the truth, only the expected error remains; "" if there is none either.
+/// Returns a line such as "error: 2.6 mm over the scene (expected 3.1 mm), 5.9 mm on the object; footprint IoU 1.00".
+/// If the truth is unknown, the line has only the expected error. Returns "" if there is no expected error either.
 std::string error_line(const Row& summary) {
   const Errors errors = errors_in(summary);
   const std::optional<double> expected = summary.number(kExpectedError);
@@ -36,7 +36,7 @@ std::string error_line(const Row& summary) {
                      errors.footprint_iou ? "; footprint IoU " + share_text(errors.footprint_iou) : "");
 }
 
-/// Returns one line with the counts of numerical problems; "" if there were none.
+/// Returns one line with the counts of numerical problems. Returns "" if there were none.
 std::string numerics_line(const Row& row) {
   std::string line;
   const auto add = [&](const char* kind, const char* words) {
@@ -50,8 +50,8 @@ std::string numerics_line(const Row& row) {
   return line.empty() ? line : fmt::format("numerics: {}; runs/README.md explains these terms\n", line);
 }
 
-/// Returns a line with the taps whose final label differs from their line in the table and in taps.csv; "" if there are
-/// none.
+/// Returns a line with the taps whose final label differs from the label in the table and in taps.csv. Returns "" if
+/// there are none.
 std::string relabelled_line(const Row& summary) {
   std::string line;
   for (const Relabelled& one : relabelled_in(summary)) {
@@ -61,7 +61,7 @@ std::string relabelled_line(const Row& summary) {
   return line.empty() ? line : fmt::format("relabelled at the end: {}\n", line);
 }
 
-/// Returns for example "suspected outliers: tap 8 (0.93), tap 12 (0.61)"; "" if there are none.
+/// Returns a line such as "suspected outliers: tap 8 (0.93), tap 12 (0.61)". Returns "" if there are none.
 std::string outliers_line(const Row& row) {
   const Scalar* const value = row.find("suspected_outliers");
   const auto* const list = value != nullptr ? std::get_if<JsonList>(value) : nullptr;
@@ -110,7 +110,7 @@ std::string displayable(std::string_view text) {
 }
 
 void print_message(const std::string& text) {
-  // Keeps the order of stdout and stderr if both go to the same file.
+  // If stdout and stderr go to the same file, this keeps their order.
   flush_output();
   std::fputs(displayable(text).c_str(), stderr);
 }

@@ -30,14 +30,14 @@ class TapTable final : public Observer {
 /// Terminal codes that erase the current line.
 constexpr std::string_view kClearLine = "\r\x1b[K";
 
-/// Returns `text` as printable() does, except for kClearLine at its beginning.
+/// Returns the result of printable() for `text`, except that kClearLine at its beginning is kept.
 std::string displayable(std::string_view text);
 
-/// Writes a message about the work on stderr, as displayable() returns it. A closed terminal is not an error here,
-/// unlike in fmt::print.
+/// Writes a message about the progress of the work on stderr, after conversion by displayable(). If the terminal is
+/// closed, fmt::print would throw; this function ignores the failure.
 void print_message(const std::string& text);
 
-/// Returns the path of the record, or the command that resumes the run.
+/// Returns a line with the path of the record, or with the command that resumes the run.
 std::string record_line(const RunReport& report);
 
 /// Prints the result of a run in a few lines.

@@ -31,10 +31,10 @@ int execute_run(const Program& program, const ResolvedConfig& config, const RunO
   RunReport report;
   const std::optional<Error> trouble = catch_error([&] {
     report = action(observers);
-    if (watcher) watcher->start();  // for a run without further taps, which calls neither announce() nor record()
+    if (watcher) watcher->start();  // A run without further taps calls neither announce() nor record().
   });
   std::vector<RunOutcome> runs{{"run " + config.id, "", trouble ? trouble->what() : "", {}}};
-  // A failed run is a result that continuous integration must see.
+  // Continuous integration must see a failed run as a result.
   if (trouble && trouble->kind() == Error::Kind::run) write_junit(judge(config.expectations, runs), runs, gate);
   if (trouble) throw *trouble;
   set_record_line(record_line(report));

@@ -8,7 +8,7 @@ namespace palpate::cli {
 
 struct ExplainArguments {
   std::string directory;
-  int tap = 0;  ///< from 1
+  int tap = 0;  ///< number of the tap, counted from 1
 };
 PALPATE_WHOLE int explain(Program& program, const ExplainArguments& arguments);
 

@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Warns on stderr if the run has not ended, so that the files hold only its first `taps` taps.
+/// Warns on stderr if the run has not ended, because the files then hold only its first `taps` taps.
 void warn_state(const fs::path& directory, std::size_t taps) {
   const RunStatus status = read_status(directory);
   if (status.state == RunStatus::State::done) return;
@@ -27,8 +27,8 @@ void warn_state(const fs::path& directory, std::size_t taps) {
   print_message(fmt::format("this run {}; the export uses its first {} taps\n", how, taps));
 }
 
-/// Creates the output folder and returns it. Throws Error for the directory of the run, because its files have the same
-/// names.
+/// Creates the output folder and returns it. Throws Error if the output folder is the directory of the run, because
+/// files of the run have the same names.
 fs::path folder_for(const fs::path& directory, const std::string& to) {
   if (to.empty()) return make_inner_folder(directory / "export");
   fs::path folder = make_folder(to);
@@ -43,7 +43,7 @@ void write_into(const fs::path& folder, const char* name, const std::string& tex
   print_out("{}\n", (folder / name).string());
 }
 
-/// Writes one table per part of the record. No plugin is needed, and the run may have no tap.
+/// Writes one table per part of the record. The export needs no plugin, and the run may have no tap.
 int export_tables(const fs::path& directory, const std::string& to) {
   const RunRecord record = read_run_record(directory);
   if (!record.manifest)

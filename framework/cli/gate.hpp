@@ -9,17 +9,18 @@
 
 namespace palpate::cli {
 
-/// The destination of the verdicts.
+/// Files and streams that receive the results of the expectations.
 struct GateOutput {
   std::string suite;             ///< name of the experiment
   std::string junit;             ///< JUnit file; "": none
   bool count_on_stdout = false;  ///< prints for example "expected: 3 of 3", if there are expectations
 };
 
-/// Throws Error (usage) if the folder of `junit` is not writable. Called before a long sweep rather than after it.
+/// Throws Error of kind `usage` if the folder of `junit` is not writable. Call this function before a long sweep, so
+/// that the error does not appear only after it.
 void check_junit(const std::string& junit);
 
-/// Writes the JUnit file if output.junit names one. Throws Error.
+/// Writes the JUnit file if `output.junit` names one. Throws Error.
 void write_junit(const std::vector<Verdict>& verdicts, const std::vector<RunOutcome>& runs, const GateOutput& output);
 
 /// Checks the expectations, prints one line on stderr per expectation that fails, and writes the JUnit file. Returns
@@ -27,7 +28,7 @@ void write_junit(const std::vector<Verdict>& verdicts, const std::vector<RunOutc
 bool conclude(const std::vector<Expectation>& expectations, const std::vector<RunOutcome>& runs,
               const GateOutput& output);
 
-/// Returns the exit status of a sweep. Failed runs are a failure, unless an expectation is about their number.
+/// Returns the exit status of a sweep. Failed runs make the sweep fail, unless an expectation is about their number.
 int sweep_status(const std::vector<Expectation>& expectations, bool all_hold, bool any_failed);
 
 }  // namespace palpate::cli

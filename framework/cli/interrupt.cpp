@@ -11,13 +11,14 @@
 namespace palpate::cli {
 namespace {
 
-/// The first Ctrl-C stops the run after the present tap, the second one ends the program.
+/// The first Ctrl-C stops the run after the present tap. The second one ends the program.
 extern "C" void on_key(int signal) {
   if (interrupted.exchange(true)) std::_Exit(128 + signal);
 }
 
-/// SIGTERM and SIGHUP only set the flag, however often they come. A closed terminal sends several, and a scheduler
-/// signals each process of a job. None of them means to leave a robot's arm where it is.
+/// SIGTERM and SIGHUP only set the flag, however often they come. A closed terminal sends several of these signals, and
+/// a scheduler signals each process of a job. None of these signals is a request to leave a robot's arm in the middle
+/// of a motion.
 extern "C" void on_request(int) { interrupted = true; }
 
 bool followed = false;
@@ -29,17 +30,17 @@ std::atomic<bool> interrupted{false};
 void listen_for_interrupts() {
   std::signal(SIGINT, on_key);
   std::signal(SIGTERM, on_request);
-  if (std::signal(SIGHUP, on_request) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);  // nohup
+  if (std::signal(SIGHUP, on_request) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);  // nohup has set SIG_IGN
 }
 
 void follow_parent() {
   const char* const value = std::getenv("PALPATE_PARENT");
   if (value == nullptr) return;
   const std::string parent = value;
-  ::unsetenv("PALPATE_PARENT");  // child processes must not inherit the variable
+  ::unsetenv("PALPATE_PARENT");  // Child processes must not inherit the variable.
   followed = true;
   ::prctl(PR_SET_PDEATHSIG, SIGTERM);
-  if (parent != std::to_string(::getppid())) std::_Exit(128 + SIGTERM);  // the parent has already ended
+  if (parent != std::to_string(::getppid())) std::_Exit(128 + SIGTERM);  // The parent has already ended.
 }
 
 void keep_parent() {

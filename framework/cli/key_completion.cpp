@@ -18,8 +18,8 @@ namespace {
 using Type = FieldDescription::Type;
 using Descriptions = std::vector<FieldDescription>;
 
-/// Returns the config with the overrides typed so far. Invalid overrides, such as a sweep's list for a group, are left
-/// out. An invalid config is empty.
+/// Returns the config with the overrides that were typed so far. Invalid overrides are left out, such as a list of
+/// groups in a sweep. For an invalid config, returns an empty tree.
 Tree config_so_far(Composer& composer, const std::string& config, const std::vector<std::string>& before) {
   Tree out = Tree::map();
   std::vector<Override> overrides;
@@ -31,7 +31,7 @@ Tree config_so_far(Composer& composer, const std::string& config, const std::vec
   return out;
 }
 
-/// The keys of a config, level by level, and their values.
+/// The keys of a config level by level, with their values.
 class Keys {
  public:
   Keys(const PluginHost& host, const Tree& config) : host_(host), config_(config) {}
@@ -48,7 +48,7 @@ class Keys {
     return out;
   }
 
-  /// Returns the fields within the field at `path`.
+  /// Returns the fields below the field at `path`.
   Descriptions within(const FieldDescription& field, const std::string& path) const {
     if (field.type == Type::section && !field.kind.empty()) return of_option(field, path);
     if (field.type == Type::section) return beside(field.fields, path + ".");
@@ -67,7 +67,7 @@ class Keys {
     return out;
   }
 
-  /// Returns the value in the config or else the default; "" for a value that is not a single word.
+  /// Returns the value in the config, or else the default value. Returns "" for a value that is not a single word.
   std::string value(const FieldDescription& field, const std::string& path) const {
     const Tree* own = config_.find_path(path);
     if (own != nullptr) return own->is_scalar() ? own->text : "";
@@ -88,7 +88,8 @@ class Keys {
     return out;
   }
 
-  /// Returns the fields of an option that stands next to its plugin instead of in it (Field::with_beside()).
+  /// Returns the fields of an option that is in the config next to its plugin instead of within it
+  /// (Field::with_beside()).
   Descriptions of_option(const FieldDescription& option, const std::string& path) const {
     FieldDescription plugin;
     for (const FieldDescription& one : options_of(option.kind, chosen_plugin(plugin, option.kind))) {
@@ -112,7 +113,7 @@ class Keys {
     return out;
   }
 
-  /// Returns the fields, and the additional fields that the values of choices bring.
+  /// Returns the fields, and the fields that the chosen values of other fields add.
   Descriptions beside(const Descriptions& fields, const std::string& prefix) const {
     Descriptions out = fields;
     for (const FieldDescription& field : fields) {

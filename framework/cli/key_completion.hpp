@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Completion of KEY=VALUE from the field lists of the config.
+// Completion of KEY=VALUE, based on the fields that configs can have.
 #pragma once
 
 #include "cli/completion.hpp"
@@ -10,17 +10,17 @@
 
 namespace palpate::cli {
 
-/// Returns the completions of `typed`, the beginning of an override of the config in the file `config`, after the
-/// overrides `before`. Keys come level by level, as folders do: first `kernel.`, then `kernel.length_scale=`. The
-/// options of a plugin are those of the plugin that the config and the overrides choose, or of the default plugin if
-/// they cannot be read.
+/// Returns the completions of `typed`, the beginning of an override. `config` is the file of the config, and `before`
+/// are the earlier overrides. Keys are completed level by level, like folders: first `kernel.`, then
+/// `kernel.length_scale=`. The options of a plugin are those of the plugin that the config and the overrides choose. If
+/// the config cannot be read, they are those of the default plugin.
 std::vector<Completion> complete_key(Program& program, const std::string& config,
                                      const std::vector<std::string>& before, const std::string& typed);
 
-/// Returns the first sentence of the comment at the beginning of a config; "" if there is none.
+/// Returns the first sentence of the comment at the beginning of a config. Returns "" if there is none.
 std::string purpose_of(const std::filesystem::path& config);
 
-/// Returns the names of the plugins of a kind, with the purposes of the shipped configs of the same names.
+/// Returns the names of the plugins of a kind. Each has the purpose of the shipped config with the same name.
 std::vector<Completion> plugin_names(const Program& program, const std::string& kind);
 
 }  // namespace palpate::cli

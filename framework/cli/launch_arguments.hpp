@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Arguments about the jobs of a sweep that `palpate sweep` and `palpate resume` have in common.
+// Arguments about the jobs of a sweep, which `palpate sweep` and `palpate resume` share.
 #pragma once
 
 #include "cli/command_line.hpp"
@@ -9,18 +9,18 @@ namespace palpate::cli {
 
 struct LaunchArguments {
   std::string launcher = kLocal;
-  std::optional<int> workers;  ///< parallel jobs; on a cluster: per task
-  int attempts = 3;            ///< starts per job, after which the job counts as failed
+  std::optional<int> workers;  ///< number of parallel jobs; on a cluster: number per task
+  int attempts = 3;            ///< maximum number of starts per job
   bool quiet = false;
   bool watch = false;
   std::string junit;
-  // Only for clusters:
+  // The remaining arguments are for clusters only.
   ClusterOptions cluster;
   std::optional<int> jobs_per_task;
   bool wait = false;
 };
 
-/// Adds the options and returns --quiet.
+/// Adds the options, and returns the option --quiet.
 Argument add_launch(const Command& command, LaunchArguments& launch);
 
 /// Throws Error for options that exclude each other, and for a JUnit file that cannot be written.

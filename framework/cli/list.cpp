@@ -30,7 +30,7 @@ void print_json(const std::vector<Row>& rows) {
   print_data(fmt::format("[{}{}{}]\n", lines.empty() ? "" : "\n", fmt::join(lines, ",\n"), lines.empty() ? "" : "\n"));
 }
 
-/// Prints the numbers of folders that are not listed.
+/// Warns with the numbers of folders that are not in the list.
 void warn_others(const Catalogue& all, const fs::path& folder) {
   std::vector<std::string> others;
   if (all.strangers > 0) others.push_back(counted(all.strangers, "folder") + " without a run");
@@ -52,7 +52,7 @@ int list_runs(Program&, const ListArguments& arguments) {
   std::vector<ListedRecord> records;
   for (const fs::path& directory : all.records) {
     const auto trouble = catch_error([&] { records.push_back(list_record(directory)); });
-    // A damaged record does not keep the others from the list.
+    // A damaged record causes a message, and the other records are still listed.
     if (trouble) print_message(fmt::format("{}\n", trouble->what()));
   }
   add_differences(records);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The main function: the command of the command line, and the exit status of an error.
+// The main function. It performs the command of the command line and returns an exit status, even after an error.
 #include "cli/command_line.hpp"
 #include "cli/completion.hpp"
 #include "cli/display.hpp"
@@ -18,7 +18,7 @@
 namespace palpate::cli {
 namespace {
 
-/// Prints the completions of the last of `words`, one line each.
+/// Prints the completions of the last one of `words`, one per line.
 int print_completions(CommandLine& line, Program& program, std::vector<std::string> words) {
   if (words.empty()) words.emplace_back();
   for (const Completion& one : completions(line.app(), program, words)) {
@@ -29,7 +29,7 @@ int print_completions(CommandLine& line, Program& program, std::vector<std::stri
 
 int run_main(int argc, char** argv) {
   const Installation installation = find_installation();
-  // `--complete` and `--needs` are for the scripts of the shells and for ./palpate, so that no help lists them.
+  // Only the scripts of the shells and ./palpate use `--complete` and `--needs`, so no help text lists them.
   const bool completes = argc > 1 && std::string_view(argv[1]) == "--complete";
   const bool needs_only = argc > 1 && std::string_view(argv[1]) == "--needs";
   if (needs_only) argv[1] = argv[0], ++argv, --argc;
@@ -47,9 +47,9 @@ int run_main(int argc, char** argv) {
   Program program{{host, installation, {argv, argv + argc}, &interrupted}, composer};
   if (completes) return print_completions(line, program, {argv + 2, argv + argc});
   if (const std::optional<int> status = line.parse(argc, argv)) return *status;
-  std::signal(SIGCHLD, SIG_DFL);  // inherited SIG_IGN would discard the exit statuses of child processes
+  std::signal(SIGCHLD, SIG_DFL);  // If the parent set SIG_IGN, the exit statuses of child processes would be lost.
   if (!needs_only) {
-    math::choose_instructions();  // reports an invalid PALPATE_INSTRUCTIONS before the command begins
+    math::choose_instructions();  // An invalid PALPATE_INSTRUCTIONS is reported here, before the command begins.
     return line.perform(program);
   }
   Needs needs(program);
@@ -68,8 +68,8 @@ int exit_status(Error::Kind kind) {
 int main(int argc, char** argv) {
   palpate::cli::occupy_standard_files();
   palpate::cli::follow_parent();
-  std::signal(SIGPIPE, SIG_DFL);  // a Python that executes this program ignores the signal
-  std::signal(SIGXFSZ, SIG_IGN);  // makes a write beyond the limit of file sizes an error, like a full disk
+  std::signal(SIGPIPE, SIG_DFL);  // Python ignores this signal, and a program that Python executes inherits this.
+  std::signal(SIGXFSZ, SIG_IGN);  // A write beyond the limit of file sizes becomes an error, as on a full disk.
   int status = palpate::cli::kFailed;
   try {
     status = palpate::cli::run_main(argc, argv);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// `palpate new`: copies the starter plugin of a kind from plugins/starters, under a new name.
+// `palpate new` copies the starter plugin of a kind from plugins/starters, under a new name.
 #include "cli/command_line.hpp"
 #include "cli/output.hpp"
 #include "reading/reading.hpp"
@@ -20,7 +20,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Returns the commands that build and run the plugin. A build folder must first be installed.
+/// Returns the commands that build and run the plugin. If the program is in a build folder, the commands first install
+/// it.
 std::string next_steps(const Installation& installation, const std::string& name) {
   const bool installed = installation.whole == installation.program;
   const fs::path folder = installation.program.parent_path();
@@ -62,7 +63,8 @@ void check_new(const Program& program, const NewArguments& arguments) {
                 "use letters, digits and _, starting with a letter");
 }
 
-/// Copies the starter file `from` to the file `to` in the folder of the plugin, with the names of plugin and kind.
+/// Copies the starter file `from` to the file `to` in the folder of the plugin, and fills in the names of plugin and
+/// kind.
 void copy_starter(const NewArguments& arguments, const fs::path& from, const std::string& to) {
   std::string text = read_bounded(from, kMostConfigBytes, Origin::user).text;
   if (text.empty()) throw Error(from.string(), "cannot be read", "install palpate again");
@@ -77,7 +79,7 @@ void create_python(const Installation& installation, const NewArguments& argumen
     copy_starter(arguments, starters / "python" / file,
                  boost::replace_all_copy(std::string(file), "starter", arguments.name));
   }
-  // The test imports this module, because `palpate` does not start the test.
+  // The test imports this module itself, because `palpate` does not start the test.
   const std::string module = "palpate_acquisition.py";
   copy_starter(arguments, installation.plugins / "python" / module, module);
   const fs::path script = installation.configs.parent_path() / "palpate";

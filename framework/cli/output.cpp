@@ -16,7 +16,7 @@ namespace palpate::cli {
 namespace {
 
 constexpr int kUnknown = -1;
-/// The errno of the first failure of stdout; 0: none.
+/// The errno of the first failed write to stdout; 0 if none failed.
 int failure = 0;
 bool outlives = false;
 std::string record;
@@ -30,7 +30,7 @@ void note_failure() {
 void occupy_standard_files() {
   for (const int number : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
     if (::fcntl(number, F_GETFD) >= 0) continue;
-    // The new file gets this number, the lowest free one.
+    // The new file gets the lowest free number, which is this one.
     ::open(number == STDIN_FILENO ? "/dev/full" : "/dev/null", number == STDIN_FILENO ? O_WRONLY : O_RDONLY);
   }
 }
@@ -57,7 +57,7 @@ void set_record_line(std::string line) { record = std::move(line); }
 int finish_output(int status) {
   flush_output();
   errno = 0;
-  if (std::ferror(stdout) != 0) note_failure();  // CLI11 prints by std::cout
+  if (std::ferror(stdout) != 0) note_failure();  // CLI11 prints through std::cout.
   // Some file systems report lost data only when the file is closed.
   errno = 0;
   const int copy = ::fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, STDERR_FILENO + 1);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The standard output of the program. A failed write does not end a command, but changes its exit status, so that a
-// lost table does not look like a printed one.
+// The standard output of the program. A failed write does not end a command but changes its exit status. A lost table
+// is therefore not mistaken for a printed one.
 #pragma once
 
 #include <fmt/format.h>
@@ -11,14 +11,15 @@
 
 namespace palpate::cli {
 
-/// Opens those of the files 0, 1 and 2 that are closed, in the wrong direction. So no file of a record gets such a
-/// number, and a write to them fails. Call this function first.
+/// Opens those of the file descriptors 0, 1 and 2 that are closed, each for the wrong direction. Otherwise a file of a
+/// record could get one of these numbers. A read or write through these descriptors still fails. Call this function
+/// first in main().
 void occupy_standard_files();
 
-/// Prints text for people on stdout, with control characters replaced (printable()), because it may contain foreign
-/// text. After a failure, the first reason is kept and further text is dropped. Does not throw.
+/// Prints text for people on stdout. Control characters are replaced by printable(), because the text may contain
+/// foreign text. After a failed write, the reason is kept and further text is dropped. Does not throw.
 void print_text(std::string_view text);
-/// Prints data for programs unchanged: JSON, YAML, words of a completion.
+/// Prints data for programs without any change, such as JSON, YAML and completions.
 void print_data(std::string_view text);
 template <class... Arguments>
 void print_out(fmt::format_string<Arguments...> format, Arguments&&... arguments) {
@@ -26,16 +27,16 @@ void print_out(fmt::format_string<Arguments...> format, Arguments&&... arguments
 }
 void flush_output();
 
-/// From now on, the program survives the end of the reader of stdout, such as `head`. For commands whose record is
-/// worth more than their output.
+/// After this call, the program survives the end of the process that reads stdout, such as `head`. It is for commands
+/// whose record is more important than their output.
 void outlive_reader();
 
-/// Sets a line about the record of the command. finish_output() prints it on stderr if stdout has failed.
+/// Sets a line about the record of the command.
 void set_record_line(std::string line);
 
 /// Flushes stdout and checks that all output was written. Returns `status`, or 1 if `status` is 0 and output was lost.
-/// A reader that has ended is not a loss: after outlive_reader(), stderr gets the line about the record. Without
-/// outlive_reader(), SIGPIPE has already ended the process.
+/// If the reader of stdout has ended, this does not count as lost output. After outlive_reader(), the line about the
+/// record is then printed on stderr. Without outlive_reader(), SIGPIPE has already ended the process.
 int finish_output(int status);
 
 }  // namespace palpate::cli

@@ -45,12 +45,12 @@ void write_files(const Sweep& sweep, const Pareto& pareto, const std::string& na
   }
 }
 
-/// Prints the config of the first job of a setting, after a comment with the reason for the choice. The expectations of
-/// the sweep are left out, because they do not apply to a single run.
+/// Prints the config of the first job of a setting, below a comment with the reason for this choice. The expectations
+/// of the sweep are left out, because they do not apply to a single run.
 void print_config(const Sweep& sweep, const Pareto& pareto, const Setting& chosen, double bound) {
   Tree config = read_run_config(job_directory(sweep, sweep.jobs[chosen.first_job]));
   config.erase("expect");
-  // A new name keeps runs/NAME/* a single directory, which the examples of other commands rely on.
+  // The config gets a new name. Then runs/NAME/* stays a single directory, as the examples of other commands assume.
   Tree& name = config.at("name");
   name = Tree::scalar(name.text + "_best", true);
   const char* const kept =
@@ -77,7 +77,7 @@ int pareto(Program&, const ParetoArguments& arguments) {
         fmt::format("{} of {} jobs have not ended, run them with 'palpate resume'\n", pareto.unfinished, pareto.jobs));
   }
   asked ? print_message(pareto_table(pareto)) : print_text(pareto_table(pareto));
-  // The config comes first, because writing the files may fail.
+  // The config is printed first, because writing the files may fail.
   if (chosen != nullptr) print_config(sweep, pareto, *chosen, *bound);
   write_files(sweep, pareto, sweep_name(sweep), arguments.where.value_or(""), bound, chosen);
   if (!bound || chosen != nullptr) return kDone;

@@ -7,7 +7,7 @@
 namespace palpate::cli {
 
 struct ParetoArguments {
-  std::vector<std::string> records;  ///< words for sweeps and runs that count as one sweep: see find_records()
+  std::vector<std::string> records;  ///< words that name sweeps and runs, for find_records(); these count as one sweep
   std::string cost;
   std::string error;
   std::optional<std::string> within;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What all commands share: exit statuses, the plugins and configs of the program, and the delegation of a command to
-// the program that has it.
+// Parts that all commands share: exit statuses, the plugins and configs of the program, and delegation of commands.
+// `palpate` delegates a command that only `palpate-whole` has.
 #pragma once
 
 #include "config/compose.hpp"
@@ -17,26 +17,29 @@ constexpr int kUsage = 2;
 constexpr int kBusy = 75;
 constexpr int kInterrupted = 130;
 
-/// The environment of a command.
+/// The environment in which a command is performed.
 struct Program : RunEnvironment {
   Composer& composer;
 };
 
-/// Replaces this process by `palpate-whole`, with the same command line. Throws Error if that program is not built.
+/// Replaces this process by `palpate-whole` with the same command line. Throws Error if that program is not built.
 [[noreturn]] void delegate_to_whole(const Program& program);
 
-/// Calls a function of `palpate-whole`, which is null in `palpate` (see PALPATE_WHOLE), where it delegates.
+/// Calls a function of `palpate-whole`. In `palpate` its address is null (see PALPATE_WHOLE), and the command is
+/// delegated.
 template <class Result, class... Parameters, class... Arguments>
 Result call_in_whole(Result (*function)(Program&, Parameters...), Program& program, const Arguments&... arguments) {
   if (function == nullptr) delegate_to_whole(program);
   return function(program, arguments...);
 }
 
-/// Declares a function that only `palpate-whole` defines. The first run of a clone needs `palpate` alone, and so waits
-/// for the compilation of neither sweeps nor pages. The linker sets the address of the function to null in `palpate`.
+/// Declares a function that only `palpate-whole` defines. The first run in a clone needs only `palpate`. It therefore
+/// does not wait for the compilation of sweeps and pages. The linker sets the address of the function to null in
+/// `palpate`.
 #define PALPATE_WHOLE [[gnu::weak]]
 
-/// Throws Error if `directory` is a sweep, for commands that read one run. The hint names the folders of its runs.
+/// Throws Error if `directory` is a sweep. Commands that read one run call this function. The hint of the error names
+/// the folders of the sweep's runs.
 void check_one_run(const std::filesystem::path& directory);
 
 }  // namespace palpate::cli

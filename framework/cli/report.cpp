@@ -55,14 +55,14 @@ void show(const Figures& figures) {
   for (const fs::path& picture : figures.pictures) print_out("{}\n", picture.string());
 }
 
-/// Throws Error with the reason `what` for a run from any side.
+/// Throws Error for a run from any side. `what` is the reason.
 void check_from_above(const RecordedRun& recording, const std::string& what) {
   if (!recording.is_any_side()) return;
   throw Error(recording.directory.string(), "is a run from any side, but " + what,
               "use 'palpate report' without options for its page");
 }
 
-/// Warns on stderr if the truth of the scene is lost, so that errors come from the record.
+/// Warns on stderr if the truth of the scene is lost. The errors are then those of the record.
 void warn_lost(const History& history) {
   if (history.truth_lost) print_message(truth_lost_words(*history.truth_lost) + "\n");
 }
@@ -116,7 +116,7 @@ void report_several(const RunEnvironment& environment, const ReportArguments& ar
 }  // namespace
 
 int report(Program& program, const ReportArguments& arguments) {
-  // An interrupt may end this command at once: no tap is under way, and each file is replaced as a whole.
+  // An interrupt may end this command at once, because no tap is being made and each file is replaced as a whole.
   for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, SIG_DFL);
   if (!arguments.to.empty()) make_folder(arguments.to);
   if (arguments.directories.size() > 1) {

@@ -7,7 +7,7 @@
 namespace palpate::cli {
 
 struct ReportArguments {
-  std::vector<std::string> directories;  ///< a run or a sweep, or several runs for one page
+  std::vector<std::string> directories;  ///< a run, a sweep, or several runs for a common page
   std::string to;                        ///< output folder; "": the default
   bool figures = false;
   bool paper = false;

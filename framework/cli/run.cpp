@@ -38,7 +38,8 @@ struct RunArguments {
   std::string junit;
 };
 
-/// Prints the files of the groups, each value with its place, and the options that a later choice of type dropped.
+/// Prints the files of the groups, and each value with the place where it was set. Also prints the options that were
+/// dropped because a later group chose another type.
 void print_origins(const std::vector<Composer::Group>& groups, const ResolvedConfig& config) {
   for (const Composer::Group& one : groups) print_out("# {} {}: {}\n", one.path, one.name, one.file.string());
   std::size_t width = 0;
@@ -55,15 +56,15 @@ void print_origins(const std::vector<Composer::Group>& groups, const ResolvedCon
   }
 }
 
-/// Returns a clearer error if `trouble` is about an override with several values of a key, as for `palpate sweep`;
-/// otherwise returns `trouble`.
+/// If `trouble` is about an override with several values for a key (which only `palpate sweep` accepts), returns a
+/// clearer error. Otherwise returns `trouble`.
 Error axis_error(const std::vector<Override>& overrides, const std::vector<std::string>& texts, const Error& trouble) {
   const auto mentions = [&](const std::string& text) { return trouble.reason().find(text) != std::string::npos; };
   for (std::size_t i = 0; i < texts.size(); ++i) {
     const Override& one = overrides[i];
     const bool about = one.value.is_scalar() && trouble.where() == one.value.place.text() &&
                        (mentions(one.path + ":") || mentions("'" + one.value.text + "'"));
-    // A comma between digits is more often a decimal comma than a list.
+    // A comma between two digits is more often a decimal comma than a separator of a list.
     if (!about || mentions("decimal comma")) continue;
     ValueCount count;
     if (parse_axis(texts[i], count).values.size() < 2) continue;
@@ -73,8 +74,8 @@ Error axis_error(const std::vector<Override>& overrides, const std::vector<std::
   return trouble;
 }
 
-/// Prints the models for the choice of taps, each with the parts that read it, in lines that begin with `mark`. Throws
-/// Error for a config that cannot be run.
+/// Prints the models that the choice of taps needs, each with the readers that need it. Each line begins with `mark`.
+/// Throws Error for a config that cannot be run.
 void print_models(const Program& program, const ResolvedConfig& config, const char* mark) {
   std::map<std::string, std::string> models;
   for (const PlannedModel& one : models_of(program, config)) {
@@ -94,7 +95,7 @@ void print_plan(const ResolvedConfig& config, const std::filesystem::path& direc
             status.state == RunStatus::State::absent ? "not run yet" : state_name(status.state));
 }
 
-/// Names the command that builds the rest, if the first run was made from a terminal.
+/// If the first run was started from a terminal, prints the command that builds the remaining parts.
 void offer_full_build(const Program& program) {
   if (::isatty(STDERR_FILENO) == 0 || is_there(program.installation.whole)) return;
   print_message(

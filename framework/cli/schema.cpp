@@ -35,9 +35,9 @@ Tree of_type(const char* type, const char* description = nullptr) {
 
 Tree any_of(std::vector<Tree> schemas) { return Tree::map({{"anyOf", Tree::list(std::move(schemas))}}); }
 
-/// Returns the schema of a plugin kind: a name as plain text, or the options of one of its plugins. The type is not
-/// required, because a group in `defaults` may set it. `beside`: options that stand next to a plugin of this kind and
-/// are left out (Field::with_beside()).
+/// Returns the schema of a plugin kind. A value is either the name of a plugin, or the options of one of the plugins.
+/// The type is not required, because a group in `defaults` may set it. The options in `beside` are left out, because a
+/// config has them next to a plugin of this kind (Field::with_beside()).
 Tree kind_schema(const PluginHost& host, const std::string& kind, const std::set<std::string>& beside) {
   std::vector<Tree> any{of_type("string")};
   any.front().at("description") = Tree::quote("name of a group file or of a plugin");
@@ -52,8 +52,8 @@ Tree kind_schema(const PluginHost& host, const std::string& kind, const std::set
   return any_of(std::move(any));
 }
 
-/// Returns the schema of the key next to a plugin of this kind: the name of a group file, or the options of one of the
-/// plugins.
+/// Returns the schema of a key that is next to a plugin of this kind. A value is either the name of a group file, or
+/// the options of one of the plugins.
 Tree beside_schema(const PluginHost& host, const std::string& kind, const std::string& option) {
   std::vector<Tree> any{of_type("string")};
   any.front().at("description") = Tree::quote("name of a group file");
@@ -67,11 +67,12 @@ Tree beside_schema(const PluginHost& host, const std::string& kind, const std::s
   return any_of(std::move(any));
 }
 
-/// Fills the schema of `expect:`: fields of the summary and their statistics, with one or more comparisons.
+/// Fills the schema of `expect:`. Its keys are fields of the summary and statistics of them, and its values are one or
+/// more comparisons.
 void expect_schema(Tree& expect) {
   std::string fields = kFailedRuns;
   for (const RecordField& field : summary_fields()) fields += "|" + field.name;
-  // A dot of a field name matches any character in this pattern, which is precise enough for an editor.
+  // In this pattern, the dot in the name of a field matches any character, which is precise enough for an editor.
   const std::string keys = fmt::format("^(({0})|({1})\\(({0})\\))$", fields, fmt::join(statistic_names(), "|"));
   expect.at("type") = Tree::quote("object");
   expect.at("patternProperties").at(keys) = any_of({of_type("string"), of_type("boolean"), of_type("array")});
@@ -79,7 +80,7 @@ void expect_schema(Tree& expect) {
   expect = any_of({of_type("string"), expect});
 }
 
-/// Fills the schema of `defaults:`: groups with their names.
+/// Fills the schema of `defaults:`, which has groups with their names.
 void defaults_schema(Tree& defaults) {
   defaults.at("type") = Tree::quote("array");
   Tree& item = defaults.at("items") = of_type("object");
@@ -88,7 +89,7 @@ void defaults_schema(Tree& defaults) {
   item.at("maxProperties") = Tree::scalar("1");
 }
 
-/// Fills the schema of `sweep:`, whose blocks accept any keys.
+/// Fills the schema of `sweep:`. Its blocks accept any keys.
 void sweep_schema(Tree& sweep) {
   sweep.at("type") = Tree::quote("object");
   sweep.at("additionalProperties") = Tree::scalar("false");

@@ -17,7 +17,7 @@ struct StatusArguments {
 int status(Program& program, const StatusArguments& arguments) {
   const std::string& directory = arguments.directory;
   if (is_sweep(directory)) return call_in_whole(status_of_sweep, program, directory);
-  // The config is read but not resolved, so that no plugin is needed.
+  // The config is read but not resolved, because resolving needs the plugins.
   const Tree config = read_run_config(directory);
   const RunStatus status = read_status(directory);
   const auto text_at = [&](const char* key) {

@@ -17,7 +17,7 @@
 namespace palpate::cli {
 namespace {
 
-/// Longest delay of an interrupt: if another thread handles the signal, poll() does not return early.
+/// Longest delay of the reaction to a signal. If another thread handles the signal, poll() does not return early.
 constexpr int kPollMilliseconds = 100;
 
 std::string who_chose(const TapRecord& tap) {
@@ -62,7 +62,7 @@ bool Step::permits(const TapRecord& tap, const Experiment& experiment) {
   }
 }
 
-/// Returns the line without its line end; nullopt after the end of input or an interrupt.
+/// Returns the next line without its line end. Returns nullopt after the end of input and after an interrupt.
 std::optional<std::string> Step::read_line() const {
   std::string line;
   while (line.empty() || line.back() != '\n') {
@@ -71,7 +71,7 @@ std::optional<std::string> Step::read_line() const {
     if (interrupted_ != nullptr && interrupted_->load()) return std::nullopt;
     if (ready <= 0) continue;
     char piece[256];
-    const ssize_t size = ::read(STDIN_FILENO, piece, sizeof piece);  // a terminal returns at most one line
+    const ssize_t size = ::read(STDIN_FILENO, piece, sizeof piece);  // A terminal returns at most one line per call.
     if (size <= 0) return std::nullopt;
     line.append(piece, static_cast<std::size_t>(size));
   }

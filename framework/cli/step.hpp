@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// `--step`: each tap is shown on the terminal and waits for the permission of the user.
+// `--step` shows each tap on the terminal and waits until the user permits it.
 #pragma once
 
 #include "record/run.hpp"
@@ -11,15 +11,16 @@
 
 namespace palpate::cli {
 
-/// Shows each tap on stderr and waits for a line on stdin.
+/// Shows each tap on stderr and then waits for a line on stdin.
 class Step final : public Observer {
  public:
-  /// Returns null unless `wanted`. Throws Error without a terminal, before a connection is made or anything moves.
+  /// Returns null unless `wanted`. Throws Error if there is no terminal. The error occurs before any connection is made
+  /// and before anything moves.
   static std::unique_ptr<Step> when(bool wanted, const ExperimentOptions& options,
                                     const std::atomic<bool>* interrupted);
 
-  /// Returns true for Enter; false for q, for Ctrl-D, and once `interrupted` is set. Input from before the question is
-  /// discarded.
+  /// Returns true if the user presses Enter. Returns false for q, for Ctrl-D, and after `interrupted` is set. Input
+  /// that was typed before the question is discarded.
   bool permits(const TapRecord& tap, const Experiment& experiment) override;
 
  private:

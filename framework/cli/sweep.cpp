@@ -35,26 +35,26 @@
 namespace palpate::cli {
 namespace {
 
-/// A sweep that starts or resumes.
+/// A sweep that is being started or resumed.
 struct SweepExecution {
   const Program& program;
   const Sweep& sweep;
   ResumeOptions options;
   const LaunchArguments& launch;
-  std::vector<std::size_t> only;  ///< job numbers; empty: all
-  bool one_at_a_time = false;     ///< a backend moves something that exists only once, such as an arm
-  /// The config of the first job with the present expectations, when `palpate sweep` starts the sweep; nullopt for
-  /// `palpate resume`.
+  std::vector<std::size_t> only;  ///< numbers of the jobs to run; if empty, all jobs
+  bool one_at_a_time = false;     ///< whether a backend moves something that exists only once, such as an arm
+  /// If `palpate sweep` starts the sweep, this is the config of the first job with the present expectations. It is
+  /// nullopt for `palpate resume`.
   std::optional<ResolvedConfig> first = std::nullopt;
 };
 
-/// Returns the jobs that this process is responsible for, done or not.
+/// Returns all jobs for which this process is responsible, including finished ones.
 std::vector<std::size_t> jobs_of(const SweepExecution& execution) {
   return execution.only.empty() ? all_jobs(execution.sweep) : execution.only;
 }
 
-/// Ends a part of a sweep, as in a task of a cluster. The process that submitted the tasks prints the results of the
-/// whole.
+/// Finishes the output of a process that ran only a part of the sweep, such as a task of a cluster. The process that
+/// submitted the tasks prints the results of the whole sweep.
 int finish_part(const Sweep& sweep, const JobStates& end, bool interrupted, bool all_recorded) {
   const bool complete = std::all_of(sweep.jobs.begin(), sweep.jobs.end(),
                                     [&](const Job& job) { return has_ended(job_directory(sweep, job)); });
@@ -65,7 +65,8 @@ int finish_part(const Sweep& sweep, const JobStates& end, bool interrupted, bool
   return end.open.empty() ? kDone : kBusy;
 }
 
-/// Returns the config of a job; nullopt if it is damaged. The job then fails by itself and reports the reason.
+/// Returns the config of a job. Returns nullopt if the config is damaged. Such a job fails when it is run, and then
+/// reports the reason.
 std::optional<ResolvedConfig> readable_config(const SweepExecution& execution, std::size_t job) {
   std::optional<ResolvedConfig> config;
   catch_error(
@@ -73,12 +74,12 @@ std::optional<ResolvedConfig> readable_config(const SweepExecution& execution, s
   return config;
 }
 
-/// State of the jobs after the launch. `blocked`: a job could not begin, for a reason that holds for all jobs and is on
-/// stderr.
+/// State of the jobs after the launch. `blocked`: a job could not begin, for a reason that holds for all jobs. The
+/// reason was printed on stderr.
 enum class Launched { submitted, ended, ended_unrecorded, blocked };
 
-/// Returns the maximum number of initial taps of a job; nullopt if it depends on a camera's view. A search, and a run
-/// from any side, may last until the end of the run, so that all of its taps may be initial.
+/// Returns the maximum number of initial taps of a job; nullopt if it depends on a camera's view. With a search, and
+/// from any side, all taps of a run may be initial taps.
 std::optional<int> initial_taps_of(const ExperimentOptions& options) {
   if (!belief_option(options, "view").empty()) return std::nullopt;
   const bool from_above = options.belief.type == "height_map";
@@ -104,7 +105,7 @@ int finish_whole(const SweepExecution& execution, const JobStates& end, bool int
                       : "resume with: palpate resume",
             directory);
   if (interrupted) return kInterrupted;
-  // The expectations are the same in the configs of all jobs, so the first readable config is enough.
+  // All jobs have the same expectations, so the first readable config is enough.
   std::optional<ResolvedConfig> config = execution.first;
   for (std::size_t job = 0; job < sweep.jobs.size() && !config; ++job) config = readable_config(execution, job);
   if (!config) throw Error(sweep.directory.string(), "no job has a readable config.yaml", "restore these files");
@@ -137,7 +138,8 @@ void print_next_commands(const SweepExecution& execution, const Launcher& launch
   print_out("stop: {}\n", launcher.stop_command());
 }
 
-/// Runs the open jobs until all have ended. On a cluster without --wait, returns once they are submitted.
+/// Runs all open jobs and returns when they have ended. On a cluster without --wait, returns after the jobs are
+/// submitted.
 Launched launch_open(const SweepExecution& execution, const JobStates& begun) {
   const auto print_array = [](const TaskArray& array) {
     print_out("array {}: {}, {}, logs in {}\n", array.id, counted(array.tasks, "task"), counted(array.jobs, "job"),
@@ -150,13 +152,14 @@ Launched launch_open(const SweepExecution& execution, const JobStates& begun) {
   const std::unique_ptr<Launcher> launcher =
       launcher_type(execution.launch.launcher).make({program, execution.sweep, launch_options(execution), print_array});
   if (is_on_cluster(execution)) {
-    if (begun.open.empty() || program.interrupted->load()) return Launched::ended;  // nothing to submit
+    if (begun.open.empty() || program.interrupted->load()) return Launched::ended;  // There is nothing to submit.
     if (!execution.launch.wait) {
       launcher->submit(begun.open);
       print_next_commands(execution, *launcher);
       return Launched::submitted;
     }
-    // A closed terminal ends the waiting, but not the jobs. Under nohup, the waiting goes on.
+    // If the terminal is closed, the program stops waiting, but the jobs continue. Under nohup, the program continues
+    // to wait.
     if (std::signal(SIGHUP, SIG_DFL) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);
   }
   SweepLine line(execution.launch.quiet);
@@ -177,7 +180,7 @@ std::vector<std::size_t> jobs_not_done(const JobStates& standing) {
   return out;
 }
 
-/// Sets one_at_a_time. Throws Error if another build started one of these jobs, unless --force is given.
+/// Sets `one_at_a_time`. Without --force, throws Error if another build started one of these jobs.
 void check_builds(SweepExecution& execution, const std::vector<std::size_t>& jobs) {
   for (const std::size_t job : jobs) {
     const std::filesystem::path directory = job_directory(execution.sweep, execution.sweep.jobs[job]);
@@ -195,7 +198,7 @@ int execute_sweep(const SweepExecution& execution, JobStates begun) {
   const Sweep& sweep = execution.sweep;
   check_locks(sweep.directory);
   const bool whole = execution.only.empty();
-  // The node that runs a part of the jobs may mount the folder in another way than the node that submitted them.
+  // The node that runs a part of the jobs may mount the folder in a different way than the node that submitted them.
   if (is_on_cluster(execution) || !whole) check_shared_locks(sweep.directory);
   listen_for_interrupts();
   outlive_reader();
@@ -208,16 +211,16 @@ int execute_sweep(const SweepExecution& execution, JobStates begun) {
   if (execution.launch.watch) start_watcher(execution.program, sweep.directory);
   const Launched launched = launch_open(execution, begun);
   if (launched == Launched::submitted) return kDone;
-  // Missing files do not count here: `execute_jobs` has reported them, and a job of another build may never get them
-  // back.
+  // Missing files are not checked here. `execute_jobs` has reported them, and for a job of another build they may be
+  // lost for good.
   const JobStates end = read_job_states(sweep, jobs, JobCheck::nothing);
   const bool interrupted = execution.program.interrupted->load();
   if (whole) return finish_whole(execution, end, interrupted, launched);
   return finish_part(sweep, end, interrupted, launched != Launched::ended_unrecorded);
 }
 
-/// Returns the job numbers in a text such as "0-7,12", ascending, each once. Throws Error for a number that is not
-/// below `count`.
+/// Returns the numbers in a text such as "0-7,12" in ascending order, each once. Throws Error for a number that is too
+/// large: it must be less than `count`.
 std::vector<std::size_t> parse_jobs(const std::string& text, std::size_t count) {
   const auto refuse = [&] {
     return Error("command line", fmt::format("--jobs: '{}' is not a list of job numbers", text),
@@ -242,14 +245,14 @@ std::vector<std::size_t> parse_jobs(const std::string& text, std::size_t count) 
   return {jobs.begin(), jobs.end()};
 }
 
-/// Returns the entry of the launcher. Throws Error for options that the launcher rejects.
+/// Returns the entry of the launcher in the table of launchers. Throws Error for options that the launcher rejects.
 const LauncherType& checked_launcher(const LaunchArguments& launch) {
   const LauncherType& out = launcher_type(launch.launcher);
   if (out.check_options != nullptr) out.check_options(launch.cluster);
   return out;
 }
 
-/// Throws Error for a sweep whose taps are made by a Python program.
+/// Throws Error if a Python program would have to make the taps of the sweep.
 void check_taps_are_own(const ResolvedConfig& config, const std::string& place) {
   if (config.options.backend.type != kCaller) return;
   throw Error(place, "the taps of this sweep are made by the caller's own program, not by palpate",
@@ -265,7 +268,7 @@ std::size_t jobs_of_sweep(Program& program, const std::string& config) {
 int sweep(Program& program, const SweepArguments& arguments) {
   check_launch(arguments.launch);
   const LauncherType& launcher = checked_launcher(arguments.launch);
-  // A missing scheduler must not leave a sweep behind that nothing can run.
+  // This check comes first, because a sweep that no scheduler can run must not be created.
   if (launcher.check_installed != nullptr && !arguments.list) launcher.check_installed();
   bool one_at_a_time = false;
   std::optional<ResolvedConfig> first;
@@ -292,7 +295,7 @@ int sweep(Program& program, const SweepArguments& arguments) {
   const bool is_new = draft->publish(*plan);
   const std::filesystem::path directory = plan->sweep.directory;
   draft.reset();
-  plan.reset();  // each child process would copy the memory of the planning
+  plan.reset();  // Otherwise each child process would copy the memory of the planning.
   const Sweep planned = read_sweep(directory);
   SweepExecution execution{program, planned, {}, arguments.launch, {}, one_at_a_time, std::move(first)};
   if (!is_new) check_builds(execution, jobs_of(execution));
@@ -327,7 +330,7 @@ int resume_sweep(Program& program, const ResumeArguments& arguments) {
   return execute_sweep(execution, std::move(begun));
 }
 
-/// Reads the directories of the jobs alone, and asks neither the scheduler nor another process.
+/// Reads only the directories of the jobs. Calls neither the scheduler nor another process.
 int status_of_sweep(Program&, const std::string& directory) {
   const Sweep sweep = read_sweep(directory);
   JobStates now = read_job_states(sweep, all_jobs(sweep), JobCheck::running);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Arguments of `palpate sweep`, and what other commands do with sweeps.
+// Arguments of `palpate sweep`, and functions with which other commands handle sweeps.
 #pragma once
 
 #include "cli/command_line.hpp"

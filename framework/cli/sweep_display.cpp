@@ -26,7 +26,7 @@ std::string rate_words(double per_second) {
                                   : fmt::format("{:.3g} per hour", 3600.0 * per_second);
 }
 
-/// Returns for example "12 s", "8 min", "3 h 05 min".
+/// Returns a text such as "12 s", "8 min" or "3 h 05 min".
 std::string duration_words(double seconds) {
   if (seconds < 90.0) return fmt::format("{:.2g} s", seconds);
   const auto minutes = static_cast<std::int64_t>(std::lround(seconds / 60.0));

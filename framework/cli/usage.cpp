@@ -18,7 +18,7 @@ namespace palpate::cli {
 namespace {
 
 constexpr std::size_t kWidth = 100;
-constexpr std::size_t kColumn = 28;  ///< first column of the descriptions
+constexpr std::size_t kColumn = 28;  ///< column in which descriptions begin
 
 std::string full_name(const CLI::App& app) {
   return app.get_parent() == nullptr ? "palpate" : "palpate " + app.get_name();
@@ -38,11 +38,11 @@ std::string synopsis(const CLI::App& app) {
   return out;
 }
 
-/// Returns for example "--launcher NAME", "CONFIG", "OVERRIDE KEY=VALUE ...".
+/// Returns a text such as "--launcher NAME", "CONFIG" or "OVERRIDE KEY=VALUE ...".
 std::string head_of(const CLI::Option& option) {
   const std::string value = value_of(option);
   if (option.get_positional()) {
-    // The name of a positional argument is that of its value, except for values with a form such as KEY=VALUE.
+    // A positional argument has the name of its value, except for values with a form such as KEY=VALUE.
     if (value.find_first_of("=/") == std::string::npos) return option.get_name();
     return fmt::format("{} {}{}", option.get_name(), value, option.get_items_expected_max() > 1 ? " ..." : "");
   }
@@ -52,8 +52,8 @@ std::string head_of(const CLI::Option& option) {
   return fmt::format("{}{}{}", fmt::join(names, ", "), value.empty() ? "" : " ", value);
 }
 
-/// Returns the accepted values of an option, for example "1 to 1024" or "{local,slurm}". CLI11 appends them to the name
-/// of the value.
+/// Returns a text with the accepted values of an option, for example "1 to 1024" or "{local,slurm}". CLI11 appends this
+/// text to the name of the value.
 std::string accepted_by(const CLI::Option& option) {
   const std::string type = option.get_type_name();
   const auto colon = type.find(':');
@@ -62,7 +62,7 @@ std::string accepted_by(const CLI::Option& option) {
 
 struct Section {
   std::string heading;
-  std::vector<std::pair<std::string, std::string>> entries;  ///< terms with their meanings
+  std::vector<std::pair<std::string, std::string>> entries;  ///< terms with their descriptions
 };
 
 std::vector<Section> sections_of(const CLI::App& app) {
@@ -80,7 +80,7 @@ std::vector<Section> sections_of(const CLI::App& app) {
   return out;
 }
 
-/// Formats a term with its description to the right, or below a long term.
+/// Formats a term with its description. The description is to the right of the term, or below it if the term is long.
 std::string entry(const std::string& term, const std::string& meaning) {
   std::string out = "  " + term;
   if (out.size() + 2 > kColumn) out += "\n" + std::string(kColumn, ' ');
@@ -88,7 +88,7 @@ std::string entry(const std::string& term, const std::string& meaning) {
   return out + fmt::format("{}\n", fmt::join(wrapped(meaning, kWidth - kColumn), "\n" + std::string(kColumn, ' ')));
 }
 
-/// Escapes a text for roff: hyphens can be searched for and pasted, and no line is a request.
+/// Escapes a text for roff. Readers can then search for hyphens and copy them, and roff takes no line as a request.
 std::string roff(std::string text) {
   boost::replace_all(text, "\\", "\\e");
   boost::replace_all(text, "-", "\\-");
@@ -96,7 +96,7 @@ std::string roff(std::string text) {
   return "\\&" + text;
 }
 
-/// The part of the manual that all commands share. The exit statuses are those of program.hpp.
+/// The part of the manual that all pages share. The exit statuses must agree with program.hpp.
 constexpr const char* kCommon =
     ".SH EXIT STATUS\n"
     ".TP\n.B 0\nsuccess\n"

@@ -20,8 +20,9 @@ struct ValidateArguments {
 
 int validate(Program& program, const ValidateArguments& arguments) {
   int bad = 0;
-  // All lines are printed at the end, because for a sweep this process may execute palpate-whole, which starts again.
-  std::vector<std::pair<bool, std::string>> said;  // true: a valid config
+  // All lines are printed at the end. For a sweep, this process may execute palpate-whole, which validates all files
+  // again.
+  std::vector<std::pair<bool, std::string>> said;  // true for a valid config
   for (const std::string& file : arguments.configs) {
     // All files are checked, so that one command reports every invalid file.
     const std::optional<Error> trouble = catch_error([&] {
@@ -31,7 +32,7 @@ int validate(Program& program, const ValidateArguments& arguments) {
             true, fmt::format("{}: valid, a sweep of {} jobs\n", file, call_in_whole(jobs_of_sweep, program, file)));
       } else {
         const ResolvedConfig config = resolve_experiment(tree, program.host);
-        // Only the construction of the scene finds a broken mesh, or objects that do not fit into the area.
+        // Only the construction of the scene detects a broken mesh, and objects that do not fit into the area.
         build_scene(config.options.scene, static_cast<std::uint64_t>(config.options.seed), program.host);
         for (const std::string& line : partly_given_sizes(config.tree, config.notes))
           said.emplace_back(false, line + "\n");

@@ -17,14 +17,14 @@
 namespace palpate::cli {
 namespace {
 
-/// Returns the first line, or all text that arrives within half a minute.
+/// Returns the first line. If it does not arrive within half a minute, returns all text that has arrived.
 std::string first_line(const Descriptor& from) {
   constexpr int kMostWait = 30'000;
   std::string out;
   std::array<char, 256> some{};
   pollfd ready{from.number(), POLLIN, 0};
   while (out.find('\n') == std::string::npos) {
-    if (::poll(&ready, 1, kMostWait) <= 0) break;  // poll() also returns when a signal stops the run
+    if (::poll(&ready, 1, kMostWait) <= 0) break;  // poll() also returns if a signal stops the run.
     const ssize_t got = ::read(from.number(), some.data(), some.size());
     if (got <= 0) break;
     out.append(some.data(), static_cast<std::size_t>(got));
@@ -40,8 +40,8 @@ void start_watcher(const palpate::cli::Program& program, const std::filesystem::
   std::optional<Pipe> pipe = open_pipe();
   const Descriptor nothing = above_standard(::open("/dev/null", O_RDONLY | O_CLOEXEC));
   palpate::Program watch{{whole, "watch", directory.string(), "--until-left"}, whole};
-  // The watcher inherits no open file, so that the reader of this program's output does not wait for the end of the
-  // watcher.
+  // The watcher must not inherit open files. Otherwise a process that reads the output of this program would wait for
+  // the end of the watcher.
   const bool started =
       pipe && nothing && spawn(watch, {nothing.number(), pipe->to_write.number(), pipe->to_write.number()}) > 0;
   if (!started) said = fmt::format("{}: {}", whole, errno == ENOENT ? "is not built" : std::strerror(errno));

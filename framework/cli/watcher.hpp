@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// `--watch`: starts a process that serves the page of a run or sweep.
+// `--watch` starts a process that serves the page of a run or sweep.
 #pragma once
 
 #include "cli/program.hpp"
@@ -9,11 +9,12 @@
 
 namespace palpate::cli {
 
-/// Starts `palpate watch DIRECTORY --until-left`. Prints on stderr the address of the page, or the reason why there is
-/// none, which is not an error. The process ignores the terminal's signals and outlives this process.
+/// Starts `palpate watch DIRECTORY --until-left`. Prints the address of the page on stderr. If there is no page, prints
+/// the reason instead, which does not count as an error. The started process ignores the signals of the terminal and
+/// outlives this process.
 void start_watcher(const Program& program, const std::filesystem::path& directory);
 
-/// Starts the watcher right before the first tap, because the run directory does not exist earlier.
+/// Starts the watcher right before the first tap, because the directory of the run does not exist earlier.
 class Watcher final : public Observer {
  public:
   /// `program` must outlive this object.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A run for Python whose taps the caller makes: ask and tell.
+// A run for Python in which the calling program makes the taps: ask() returns a tap, and tell() takes its result.
 #pragma once
 
 #include "answers/tap_result_checks.hpp"
@@ -21,7 +21,8 @@
 
 namespace palpate {
 
-/// A run whose taps the caller makes. Any thread may call the methods, with the GIL; one thread at a time uses the run.
+/// A run in which the calling program makes the taps. Any thread that holds the GIL may call the methods. One thread at
+/// a time uses the run.
 class AskTellRun {
  public:
   AskTellRun(const std::string& config, const std::vector<std::string>& overrides, const std::string& runs,
@@ -37,7 +38,8 @@ class AskTellRun {
     run_ = started(Run::resume(environment_.run_environment, directory, {retry_failed, force, Taps::by_caller}));
     describe();
   }
-  /// In a forked child the run is leaked, because its destructor would wait for threads that the child lacks.
+  /// In a forked child the run is never destroyed, because its destructor would wait for threads that do not exist in
+  /// the child.
   ~AskTellRun() {
     if (!lock_.is_here()) static_cast<void>(run_.release());
   }
@@ -59,8 +61,8 @@ class AskTellRun {
     const ObjectGuard guard(lock_);
     return to_json(open().finish().summary);
   }
-  /// Closes the record, also if an exception is thrown. `finish` ends the run first, unless a tap is pending. A run
-  /// that has not ended can be resumed. Does nothing in the child of a fork.
+  /// Closes the record, even if an exception is thrown. If `finish` is set, ends the run before, unless a tap is
+  /// pending. A run that has not ended can be resumed later. In the child of a fork, the function does nothing.
   void close(bool finish) {
     if (!lock_.is_here()) return;
     const ObjectGuard guard(lock_);
@@ -76,13 +78,14 @@ class AskTellRun {
     const ObjectGuard guard(lock_);
     return open().experiment().counts().taps;
   }
-  /// Returns a copy of the values of a quantity as of now: a map, or without a grid a single row.
+  /// Returns a copy of the present values of a quantity. They form a map, or a single row if the candidates are not on
+  /// a grid.
   Map map(const std::string& quantity) {
     const ObjectGuard guard(lock_);
     const Eigen::VectorXd& values = open().look({quantity}).values(quantity);
     return has_grid() ? Map{values, rows(), columns()} : Map{values, 1, static_cast<int>(values.size())};
   }
-  /// Returns a row per candidate as of now: start, direction and length.
+  /// Returns one row per candidate line: start, direction and length at present.
   Map lines() {
     const ObjectGuard guard(lock_);
     const Candidates& lines = open().look({}).candidates();
@@ -101,7 +104,7 @@ class AskTellRun {
   const Eigen::VectorXd& ys() const { return ys_; }
 
  private:
-  /// Sets the properties that do not change during the run.
+  /// Sets the properties that stay the same during the run.
   void describe() {
     directory_ = run_->directory().string();
     if (const Tree* label = run_->config().tree.find_path("backend.label")) label_ = label->text;
@@ -112,7 +115,7 @@ class AskTellRun {
   int rows() const { return static_cast<int>(ys_.size()); }
   int columns() const { return static_cast<int>(xs_.size()); }
 
-  /// Returns the run. Throws Error for a finished one.
+  /// Returns the run, or throws Error if the run is finished. Throws Error for a finished one.
   static std::unique_ptr<Run> started(std::unique_ptr<Run> run) {
     if (!run->is_finished()) return run;
     throw Error(run->finish().directory.string(), "this run is finished",
@@ -143,7 +146,8 @@ class AskTellRun {
   Eigen::VectorXd ys_;
 };
 
-/// Returns the result of a tap as a backend would return it. Throws Error for an outcome that no answer may have.
+/// Returns the result of a tap in the form in which a backend would return it. Throws Error for an outcome that the
+/// calling program must not report.
 inline TapResult result_of(const std::string& outcome, std::optional<double> height, std::optional<double> distance,
                            const std::optional<std::array<double, 3>>& contact, double force, double seconds,
                            const std::string& reason, bool ends_run) {
@@ -153,7 +157,7 @@ inline TapResult result_of(const std::string& outcome, std::optional<double> hei
                 "use contact, no_contact, unreachable, timeout or aborted");
   }
   TapResult out = tap_without_contact(*known, seconds, reason, ends_run);
-  // Only on a line from above does the height determine the touched point.
+  // The height determines the touched point only if the line comes from above.
   constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
   if (height) out.contact.emplace(kUnknown, kUnknown, *height);
   if (contact) out.contact.emplace((*contact)[0], (*contact)[1], (*contact)[2]);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The module palpate._palpate: reads records, computes their models again, and runs experiments. Only
-// palpate/__init__.py, the documented interface, uses it.
+// The module palpate._palpate. It reads records, recomputes their models, and runs experiments. Only
+// palpate/__init__.py uses this module; that file is the documented interface.
 #include "ask_tell_run.hpp"
 #include "config/quantity.hpp"
 #include "module_host.hpp"
@@ -28,8 +28,8 @@
 namespace palpate {
 namespace {
 
-/// Calls a Python function after every tap of a run, on the thread of the run. Interrupts the run at Ctrl-C, and if the
-/// function throws.
+/// Calls a Python function after every tap of a run, in the thread of the run. Interrupts the run after Ctrl-C, and
+/// after an exception of the function.
 class ProgressObserver final : public Observer {
  public:
   ProgressObserver(std::atomic<bool>& interrupted, py::object progress)
@@ -75,7 +75,8 @@ std::string run(const std::string& config, const std::vector<std::string>& overr
   return report.directory.string();
 }
 
-/// Creates the directory of a sweep unless it exists, after composing and checking every job. Returns the directory.
+/// Composes and checks every job of a sweep, and then creates the sweep's directory unless it exists. Returns the
+/// directory.
 std::string begin_sweep(const std::string& config, const std::vector<std::string>& words, const std::string& runs) {
   const GilRelease no_gil;
   Composer fresh = composer();
@@ -107,7 +108,8 @@ std::vector<std::tuple<std::string, std::string, std::string>> tap_fields() {
   return out;
 }
 
-/// Returns a text of the program with force=True in place of the option --force. Commands in quotes stay as they are.
+/// Returns a message of the program in which force=True replaces the option --force. Commands in quotes are not
+/// changed.
 std::string in_python(const std::string& text) {
   std::string out;
   bool quoted = false;
@@ -123,9 +125,9 @@ std::string in_python(const std::string& text) {
 
 Array vector_of(const Eigen::VectorXd& values) { return Array(values.size(), values.data()); }
 
-/// Defines palpate.Error and palpate.InputError, and translates exceptions of type Error to them.
+/// Defines palpate.Error and palpate.InputError, and translates the C++ exception Error to them.
 void bind_errors(py::module_& module) {
-  // palpate/__init__.py sets the documentation of both.
+  // palpate/__init__.py sets the documentation strings of both.
   static PyObject* const error = PyErr_NewException("palpate.Error", PyExc_Exception, nullptr);
   module.attr("Error") = py::handle(error);
   static PyObject* const input_error = PyErr_NewException(
@@ -206,7 +208,7 @@ void bind_tap(py::module_& module) {
 }
 
 void bind_ask_tell_run(py::module_& module) {
-  // Arrays are read-only, because a changed array would not change the belief.
+  // Arrays are read-only, because changes of an array would have no effect on the belief.
   const auto fixed = [](Array out) {
     out.attr("setflags")(py::arg("write") = false);
     return out;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The installation of this module and the plugin host, which all runs of its process share.
+// The installation of this module, and the plugin host. All runs of the process share both.
 #pragma once
 
 #include "config/compose.hpp"
@@ -31,8 +31,8 @@ struct ModuleEnvironment {
   PluginHost host{PluginHost::search_path(installation.plugins)};
 };
 
-/// Returns the environment that all threads share. It is never destroyed, because Python destroys objects in its own
-/// order.
+/// Returns the environment that all threads share. The environment is never destroyed, because Python destroys objects
+/// in an unspecified order.
 inline ModuleEnvironment& module_environment() {
   static ModuleEnvironment* const one = [] {
     auto* const made = new ModuleEnvironment;
@@ -43,7 +43,7 @@ inline ModuleEnvironment& module_environment() {
   return *one;
 }
 
-/// Environment of one run, with a flag of its own that interrupts the run.
+/// Environment of one run, with a separate flag that interrupts this run.
 struct InterruptibleEnvironment {
   std::atomic<bool> interrupted{false};
   RunEnvironment run_environment{
@@ -56,7 +56,8 @@ inline std::vector<Override> parsed_overrides(const std::vector<std::string>& ov
   return parsed;
 }
 
-/// Returns a new composer. A composer caches the files that it reads and serves one thread, so each call needs its own.
+/// Returns a new composer. A composer caches the files that it reads, and only one thread may use it. Each call
+/// therefore needs a new composer.
 inline Composer composer() { return Composer(module_environment().installation.configs, config_keys()); }
 
 inline ResolvedConfig resolve(const std::string& config, const std::vector<std::string>& overrides) {

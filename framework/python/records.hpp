@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Records for Python: a run with its taps and models, a sweep with its jobs.
+// Records for Python: a run with its taps and models, and a sweep with its jobs.
 #pragma once
 
 #include "belief/metrics.hpp"
@@ -24,7 +24,7 @@ namespace palpate {
 
 using NamedMaps = std::vector<std::pair<const char*, Map>>;
 
-/// Returns those of the maps that the present belief offers. Heights are in metres.
+/// Returns those of the maps that the belief offers at present. Heights are in metres.
 inline NamedMaps maps_of(Experiment& experiment) {
   experiment.look();
   Belief& belief = experiment.belief();
@@ -43,12 +43,14 @@ inline NamedMaps maps_of(Experiment& experiment) {
   return out;
 }
 
-/// A run directory and its models. Any thread may call the methods, with the GIL; one thread at a time uses the models.
+/// The record of a run, and its models. Any thread that holds the GIL may call the methods. One thread at a time uses
+/// the models.
 class Record {
  public:
   explicit Record(const std::string& directory)
       : recording_(read_recorded_run(environment_.run_environment.host, directory)) {}
-  /// In a forked child the models are leaked, because their destructor would wait for threads that the child lacks.
+  /// In a forked child the models are never destroyed, because their destructor would wait for threads that do not
+  /// exist in the child.
   ~Record() {
     if (!lock_.is_here()) static_cast<void>(playback_.release());
   }
@@ -57,24 +59,25 @@ class Record {
   std::string id() const { return recording_.config.id; }
   std::vector<Column> taps() const { return columns_of(recording_.rows); }
   int size() const { return static_cast<int>(recording_.rows.size()); }
-  /// Returns Python's None if no manifest is recorded.
+  /// Returns the manifest, or None if no manifest is recorded.
   py::object manifest() const {
     const std::optional<Tree>& manifest = recording_.manifest;
     return manifest ? py::module_::import("json").attr("loads")(to_json(*manifest)) : py::none();
   }
-  /// Reads the summary again. Returns Python's None for a run that has not ended.
+  /// Reads the summary file again and returns the summary. Returns None for a run that has not ended.
   py::object summary() const {
     const std::optional<Row> summary = read_summary(recording_.directory);
     return summary ? py::module_::import("json").attr("loads")(to_json_line(*summary)) : py::none();
   }
   bool is_here() const { return lock_.is_here(); }
 
-  /// Returns maps of the models after the first `taps` taps.
+  /// Returns the maps of the models after the first `taps` taps.
   NamedMaps after(int taps) {
     if (taps < 0 || taps > size())
       throw Error("after", "there are " + std::to_string(size()) + " taps, not " + std::to_string(taps), "take fewer");
     const ObjectGuard guard(lock_, "run");
-    // An exception may leave taps in the models that taps() does not count. So models are kept only after success.
+    // After an exception, the models may contain a tap that taps() does not count. The models are therefore stored
+    // again only after success.
     std::unique_ptr<RunReplay> models = std::move(playback_);
     if (!models || models->taps() > taps) models = make_replay();
     models->advance_to(taps);
@@ -83,7 +86,8 @@ class Record {
     return maps;
   }
 
-  /// Returns the heights of the simulated scene, metres; nullopt if another world was tapped.
+  /// Returns the heights of the simulated scene in metres. Returns nullopt if the taps were not made in the simulated
+  /// scene.
   std::optional<Map> truth() {
     const ObjectGuard guard(lock_, "run");
     Experiment& experiment = playback().experiment();
@@ -121,26 +125,27 @@ class Record {
   std::unique_ptr<RunReplay> playback_;
 };
 
-/// A sweep, or several sweeps and runs that are read as one (see read_pooled()), in its state at the opening.
+/// A sweep, or several sweeps and runs that are read as one sweep (see read_pooled()). The object has the state at the
+/// time when it was opened.
 class SweepRecord {
  public:
   explicit SweepRecord(const std::vector<std::string>& directories)
       : SweepRecord(read_pooled({directories.begin(), directories.end()}, {})) {}
 
   std::string directory() const { return sweep_.directory.string(); }
-  /// Notes about the comparability of several records, one line each.
+  /// Notes about whether several records are comparable, one line each.
   const std::vector<std::string>& notes() const { return notes_; }
   std::size_t size() const { return sweep_.jobs.size(); }
   const std::vector<std::string>& keys() const { return sweep_.keys; }
   std::string job(std::size_t index) const { return job_directory(sweep_, sweep_.jobs.at(index)).string(); }
 
-  /// Writes results.csv again from the jobs.
+  /// Writes results.csv again, from the records of the jobs.
   void write_table() const {
     const GilRelease no_gil;
     write_results(sweep_);
   }
 
-  /// Returns one row per job. A job that has not ended has the swept keys only.
+  /// Returns one row per job. The row of a job that has not ended has only the swept keys.
   std::vector<Column> table() const {
     std::vector<Row> rows;
     {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Access to C++ objects from threads of Python, from forked processes and at the end of the interpreter.
+// Access to C++ objects from Python threads, from forked processes, and while the interpreter ends.
 #pragma once
 
 #include <palpate/error.hpp>
@@ -21,8 +21,9 @@
 
 namespace palpate {
 
-/// Calls from Python that run without the GIL, Python's global lock. After the end of the interpreter no thread may
-/// take the GIL again: CPython 3.11 unwinds the stack of such a thread, for which C++ calls std::terminate().
+/// Counts the calls from Python that run without the GIL, the global lock of Python. After the interpreter has ended,
+/// no thread may request the GIL: CPython 3.11 would unwind the stack of the thread, and C++ would then call
+/// std::terminate().
 class CallsWithoutGil {
  public:
   static CallsWithoutGil& all() {
@@ -30,12 +31,13 @@ class CallsWithoutGil {
     return *one;
   }
 
-  /// Returns whether the interpreter ends in another thread, so that the calling thread can never take the GIL again.
+  /// Returns whether another thread is ending the interpreter. The calling thread can then never get the GIL again.
   bool ended() const { return ending_ && std::this_thread::get_id() != last_; }
 
-  /// Ends the calls. The thread that ends the interpreter calls this function, with the GIL. Returns when no other
-  /// thread is in a call. These threads, and all later calls, then wait for the end of the process. Throws the
-  /// exception of a signal, such as Ctrl-C; then the process ends without the remaining calls.
+  /// Ends all calls. The thread that ends the interpreter must call this function, while it holds the GIL. The function
+  /// returns when no other thread is in a call. Other threads that return from a call, and all later calls, then wait
+  /// for the end of the process. If a signal such as Ctrl-C arrives, the function throws its exception. The process
+  /// then ends without waiting for the remaining calls.
   void end() {
     last_ = std::this_thread::get_id();
     ending_ = true;
@@ -44,14 +46,15 @@ class CallsWithoutGil {
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
       PyEval_RestoreThread(state);
       if (PyErr_CheckSignals() == 0) continue;
-      // The remaining calls must not run while exit() destroys static objects.
+      // The remaining calls must not run while exit() destroys static objects, so the process ends before.
       ::on_exit([](int status, void*) { static_cast<void>(std::fflush(nullptr)), ::_exit(status); }, nullptr);
       throw pybind11::error_already_set();
     }
   }
 
-  /// Calls the Python function `function(number)` from within a call, with the GIL. Throws the function's exception.
-  /// The end of the interpreter does not wait for the function; then this thread never returns.
+  /// Calls the Python function `function(number)` from within a call, and holds the GIL meanwhile. Throws the exception
+  /// of the function. The end of the interpreter does not wait for the function. If the interpreter ends meanwhile,
+  /// this thread never returns.
   void call_back(const pybind11::object& function, int number) {
     Callback callback;
     PyObject* const result = PyObject_CallFunction(function.ptr(), "i", number);
@@ -64,7 +67,7 @@ class CallsWithoutGil {
   friend class GilRelease;
 
   CallsWithoutGil() {
-    // The child of a fork has only the forking thread.
+    // The child of a fork has only the thread that forked.
     ::pthread_atfork(nullptr, nullptr, [] { all().inside_ = depth_; });
   }
   void enter() {
@@ -80,12 +83,12 @@ class CallsWithoutGil {
     for (;;) ::pause();
   }
 
-  /// A call back to Python, during which the thread does not count as inside. The thread has the GIL at the beginning
-  /// and at the end.
+  /// A call from C++ to a Python function. During it, the thread does not count as inside a call. The thread must hold
+  /// the GIL at the beginning and at the end.
   struct Callback {
     Callback() : depth(std::exchange(depth_, 0)) { all().inside_ -= depth; }
     ~Callback() {
-      // Without a return, CPython is unwinding the stack of this thread.
+      // If the function did not return, CPython is unwinding the stack of this thread.
       if (has_returned && all().ended()) PyEval_SaveThread();
       if (!has_returned || all().ended()) all().wait_for_end();
       depth_ = depth;
@@ -98,13 +101,14 @@ class CallsWithoutGil {
     bool has_returned = false;
   };
 
-  static inline thread_local int depth_ = 0;  ///< nested calls of this thread, because a callback may call again
-  std::atomic<int> inside_{0};                ///< calls of all threads
+  /// depth of nested calls in this thread, because a callback may call the module again
+  static inline thread_local int depth_ = 0;
+  std::atomic<int> inside_{0};  ///< number of calls in all threads
   std::atomic<bool> ending_{false};
   std::thread::id last_;  ///< the thread that ends the interpreter
 };
 
-/// Releases the GIL for its lifetime, so that other threads of Python can run.
+/// Releases the GIL as long as the object exists, so that other Python threads can run.
 class GilRelease {
  public:
   GilRelease() {
@@ -124,8 +128,8 @@ class GilRelease {
   PyThreadState* state_;
 };
 
-/// Throws the exception of a signal, such as Ctrl-C, from a long call without the GIL. Throws Error once the
-/// interpreter ends.
+/// Throws the exception of a signal, such as Ctrl-C, during a long call without the GIL. Throws Error if the
+/// interpreter is ending.
 inline void check_signals() {
   if (CallsWithoutGil::all().ended())
     throw Error("palpate", "the Python interpreter is shutting down", {}, Error::Kind::run);
@@ -133,11 +137,11 @@ inline void check_signals() {
   if (PyErr_CheckSignals() != 0) throw pybind11::error_already_set();
 }
 
-/// Lock of an object that one thread at a time may use, in the process that created it.
+/// Lock of an object that only one thread at a time may use, and only in the process that created the object.
 class ObjectLock {
  public:
-  /// Returns false in the child of a fork. The child lacks threads that the object may need, and its copy of the lock
-  /// may stay locked for ever.
+  /// Returns whether this is the process that created the object, and not the child of a fork. The child lacks threads
+  /// that the object may need, and the lock may be locked for ever in the child.
   bool is_here() const { return process_ == ::getpid(); }
 
  private:
@@ -146,7 +150,7 @@ class ObjectLock {
   std::mutex mutex_;
 };
 
-/// Holds an ObjectLock, without the GIL. Throws Error, with `place`, in the child of a fork.
+/// Holds an ObjectLock without holding the GIL. In the child of a fork, throws Error with `place`.
 class ObjectGuard {
  public:
   explicit ObjectGuard(ObjectLock& lock, const std::string& place = "experiment") {
@@ -160,7 +164,7 @@ class ObjectGuard {
 
  private:
   std::optional<GilRelease> no_gil_;
-  std::unique_lock<std::mutex> lock_;  ///< after no_gil_, because it must be released first
+  std::unique_lock<std::mutex> lock_;  ///< declared after no_gil_, because the lock must be released first
 };
 
 }  // namespace palpate

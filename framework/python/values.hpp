@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Conversion of values to Python: maps to arrays, configs to dicts, tables to columns.
+// Conversion of C++ values to Python: maps to arrays, configs to dicts, and tables to columns.
 #pragma once
 
 #include "config/quantity.hpp"
@@ -22,21 +22,21 @@ namespace py = pybind11;
 
 using Array = py::array_t<double>;
 
-/// A map over the candidates.
+/// The values of a quantity over the candidates.
 struct Map {
   Eigen::VectorXd values;
   int rows;
   int columns;
 };
 
-/// Returns an array of rows x columns that owns the values.
+/// Returns an array of rows x columns, which owns the values.
 inline Array array_of(Map map) {
   auto* const kept = new Eigen::VectorXd(std::move(map.values));
   const py::capsule owner(kept, [](void* values) { delete static_cast<Eigen::VectorXd*>(values); });
   return Array({map.rows, map.columns}, kept->data(), owner);
 }
 
-/// Converts a value of a config: numbers, truth values and texts. Quantities become texts with their units.
+/// Converts a value of a config: numbers, truth values and texts. Quantities with a unit become texts.
 inline py::object python_of(const Tree& tree) {
   switch (tree.kind) {
     case Tree::Kind::null:
@@ -58,7 +58,7 @@ inline py::object python_of(const Tree& tree) {
   if (tree.quoted || text.empty()) return py::str(text);
   if (text == "true" || text == "false") return py::bool_(text == "true");
   if (decimal_length(text) != text.size()) return py::str(text);
-  // Python parses numbers, because the decimal point of the C library depends on the caller's locale.
+  // Python parses the numbers, because the C library expects the decimal point of the caller's locale.
   if (text.find_first_not_of("-0123456789") == std::string::npos) return py::int_(py::str(text));
   return py::float_(py::str(text));
 }
@@ -77,7 +77,7 @@ inline py::object python_of(const Scalar& scalar) {
       scalar);
 }
 
-/// A column of a table: name and values. A row without a value has None.
+/// A column of a table: name and values. The value is None in a row without a value.
 using Column = std::pair<std::string, py::list>;
 
 inline std::vector<Column> columns_of(const std::vector<Row>& rows) {

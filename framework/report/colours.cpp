@@ -15,8 +15,9 @@ const std::vector<std::string>& palette_stops(Palette palette) {
 }
 
 Colours deviation_colours(double least, double most) {
-  constexpr double kFloor = 1e-6;       // a micrometre, below any measurement
-  constexpr double kWorthRatios = 5.0;  // ratio from which a linear scale hides the lower half of the values
+  constexpr double kFloor = 1e-6;  // metres: a micrometre is below any measurement
+  // least ratio of `most` to `least` for a logarithmic scale; a linear scale would hide the lower half of the values
+  constexpr double kWorthRatios = 5.0;
   least = std::max(least, kFloor);
   most = std::max(most, kFloor);
   const bool logarithmic = most > kWorthRatios * least;

@@ -13,16 +13,17 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// A plane with a grid of nodes, whose first and last rows and columns count as outside.
+/// A plane with a grid of nodes. The nodes of the first and the last row and column count as outside the objects.
 struct Plane {
-  Vector3d origin;               ///< of the first node
+  Vector3d origin;               ///< position of the first node, metres
   std::array<Vector3d, 2> axes;  ///< unit vectors along rows and along columns
-  std::array<int, 2> nodes;      ///< number of nodes along each
-  double side = 0.0;             ///< distance between neighbours
+  std::array<int, 2> nodes;      ///< number of nodes along each axis
+  double side = 0.0;             ///< distance between neighbouring nodes, metres
 };
 
-/// Where the surface is between two nodes of a line, as a share of the way, `from` metres along it: in the middle where
-/// the intervals do not tell, as those of a row and of a column may differ at what they touch.
+/// Returns the position of the surface between two neighbouring nodes of a grid line, as a share of their distance
+/// `side`. The first node is `from` metres along the line. Returns 0.5 if no interval begins or ends between the nodes:
+/// at a tangent, the intervals of a row and of a column may differ.
 double share_between(const std::vector<Stretch>& intervals, double from, double side) {
   for (const Stretch& one : intervals) {
     for (const double end : {one.begin, one.end}) {
@@ -32,7 +33,8 @@ double share_between(const std::vector<Stretch>& intervals, double from, double 
   return 0.5;
 }
 
-/// Without points that the line through their neighbours passes within `most`.
+/// Returns the ring without intermediate points that are within `most` of the straight line between the points that
+/// remain.
 Ring straightened(const Ring& ring, double most) {
   Ring out;
   for (std::size_t first = 0; first < ring.size();) {
@@ -50,8 +52,9 @@ Ring straightened(const Ring& ring, double most) {
   return out;
 }
 
-/// Cell by cell: the line comes in over one side of a cell and leaves over another, and over the side between two cells
-/// it leaves the one and comes into the other.
+/// Adds the section of the objects by `plane` as rings, by marching squares. Each cell that the surface crosses has an
+/// edge where the ring enters and an edge where it leaves. The ring then enters the neighbouring cell through the
+/// shared edge.
 void add_section(const Scene& scene, const Plane& plane, std::vector<Ring>& out) {
   const auto [columns, rows] = plane.nodes;
   const auto node_of = [width = static_cast<std::size_t>(columns)](int i, int j) {
@@ -59,7 +62,8 @@ void add_section(const Scene& scene, const Plane& plane, std::vector<Ring>& out)
   };
   const std::size_t count = node_of(0, rows);
   std::vector<bool> inside(count);
-  std::vector<Vector3d> crossing(2 * count);  // of the edge to the next node of the row, and of the column
+  // crossings of the edges from each node to the next node of its row and to the next node of its column
+  std::vector<Vector3d> crossing(2 * count);
   bool any = false;
   for (std::size_t axis = 0; axis < 2; ++axis) {
     for (int line = 1; line + 1 < plane.nodes[1 - axis]; ++line) {
@@ -85,7 +89,7 @@ void add_section(const Scene& scene, const Plane& plane, std::vector<Ring>& out)
   std::vector<std::size_t> next(2 * count, kNone);
   for (int j = 0; j + 1 < rows; ++j) {
     for (int i = 0; i + 1 < columns; ++i) {
-      // Nodes and sides counter-clockwise.
+      // Nodes and edges of the cell, counter-clockwise.
       const std::array<std::size_t, 4> nodes{node_of(i, j), node_of(i + 1, j), node_of(i + 1, j + 1),
                                              node_of(i, j + 1)};
       const std::array<std::size_t, 4> sides{2 * nodes[0], 2 * nodes[1] + 1, 2 * nodes[3], 2 * nodes[0] + 1};
@@ -114,8 +118,8 @@ void add_section(const Scene& scene, const Plane& plane, std::vector<Ring>& out)
 }  // namespace
 
 std::vector<Ring> contours(const Scene& scene, double apart, double side) {
-  constexpr double kRadius = 0.46;  // of the longer side of the area
-  constexpr double kHeight = 0.65;  // of the centre, in radii
+  constexpr double kRadius = 0.46;  // half the width of the box, as a share of the longer side of the area
+  constexpr double kHeight = 0.65;  // (height - half the width) / half the width of the box
   const Area area = scene.area();
   const double radius = kRadius * std::max(area.width, area.depth);
   const double top = (1.0 + kHeight) * radius;

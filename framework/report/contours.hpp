@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The true scene as lines: sections of its objects by planes.
+// Contours of the true scene: sections of its objects by planes, as closed lines.
 #pragma once
 
 #include <palpate/scene.hpp>
@@ -13,10 +13,13 @@ namespace palpate {
 /// A closed line: its last point is joined to its first.
 using Ring = std::vector<Eigen::Vector3d>;
 
-/// Returns sections of the objects of a scene by level and upright planes, `apart` metres from each other, through a
-/// ball over the middle of the area as far as it is above the desk; metres, in the frame of the scene. Sections lie on
-/// the surface where they cross lines of a grid of `side` in their plane, and are straight between these crossings.
-/// Points within a tenth of `side` of such a straight line are left out. Parts thinner than `side` may be missed.
+/// Returns sections of the objects of a scene by horizontal and vertical planes, which are `apart` metres from each
+/// other. Points are in metres, in the frame of the scene. The sections are limited to a box
+/// on the desk over the middle of the area. The box is 0.92 times as wide and 0.76 times as high as the longer side of
+/// the area. A section has points on the surface, where the surface crosses the lines of a
+/// grid with spacing `side` in the plane. The points are joined by straight lines. Points within `side` / 10 of the
+/// straight line between the points that remain are removed. The sections may miss parts of an object that are thinner
+/// than `side`.
 std::vector<Ring> contours(const Scene& scene, double apart, double side);
 
 }  // namespace palpate

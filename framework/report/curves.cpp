@@ -39,7 +39,7 @@ std::vector<Curve> named_curves(const History& history, const Numbers& numbers) 
 
 struct NamedState {
   const char* name;
-  const char* field;  ///< in the record, with the dot
+  const char* field;  ///< prefix of the fields in the record, with the dot
 };
 constexpr std::array<NamedState, 3> kStates{
     {{"height GP", "height_gp."}, {"label GP", "label_gp."}, {"surface GP", "surface_gp."}}};
@@ -79,8 +79,8 @@ std::vector<Curve> times(const RecordedRun& recording, const History& history) {
   return out;
 }
 
-/// Removes values that the axis cannot show and curves without a value. A logarithmic axis becomes linear if all values
-/// lie within a factor of 20.
+/// Removes values that the axis cannot show, and curves that have no value. A logarithmic axis becomes linear if the
+/// largest value is less than 20 times the least.
 void fit_axis(CurvePanel& panel) {
   if (panel.axis == CurveAxis::logarithmic) {
     double least = std::numeric_limits<double>::infinity();
@@ -101,8 +101,8 @@ void fit_axis(CurvePanel& panel) {
   panel.curves.erase(std::remove_if(panel.curves.begin(), panel.curves.end(), empty), panel.curves.end());
 }
 
-/// Returns the constant value of a curve; nullopt if the curve visibly changes. On an axis from 0 or with a logarithmic
-/// scale, a change is visible from a thousandth of the largest value on; on a free axis, any change is.
+/// Returns the constant value of a curve; nullopt if the curve visibly changes. On an axis from 0 and on a logarithmic
+/// axis, changes of less than a thousandth of the largest value are invisible. On a free axis, any change is visible.
 std::optional<double> constant_value(const Curve& curve, CurveAxis axis) {
   double least = std::numeric_limits<double>::infinity();
   double most = -least;
@@ -114,7 +114,7 @@ std::optional<double> constant_value(const Curve& curve, CurveAxis axis) {
   return most - least <= visible ? std::optional(most) : std::nullopt;
 }
 
-/// Returns title and values of a panel whose curves are all constant; "" for other panels.
+/// Returns title and values of a panel if all its curves are constant, else "".
 std::string constant_words(const CurvePanel& panel) {
   std::string out = panel.title + ":";
   for (const Curve& curve : panel.curves) {
@@ -126,7 +126,7 @@ std::string constant_words(const CurvePanel& panel) {
   return out + (panel.unit.empty() ? "" : " " + panel.unit);
 }
 
-/// Returns a panel with the errors that are lengths, in millimetres, then a panel per other error.
+/// Returns a panel with all errors that are lengths, in millimetres, followed by one panel for each other error.
 std::vector<CurvePanel> error_panels(bool any_side, const History& history) {
   std::vector<CurvePanel> out(1);
   std::vector<Curve> lengths;
@@ -153,7 +153,7 @@ std::vector<CurvePanel> error_panels(bool any_side, const History& history) {
   return out;
 }
 
-/// Turns panels whose curves never change into words, and drops panels without a value.
+/// Turns panels whose curves never change into texts, and removes panels that have no value.
 Curves without_constants(std::vector<CurvePanel> panels) {
   Curves out;
   for (CurvePanel& panel : panels) {

@@ -10,7 +10,7 @@
 
 namespace palpate {
 
-/// One value per moment of a history; nullopt for no value.
+/// A curve with one value per moment of a history; nullopt where the run has no value.
 struct Curve {
   std::string name;  ///< "" for the only curve of a panel
   std::vector<std::optional<double>> values;
@@ -19,11 +19,12 @@ struct Curve {
 enum class CurveAxis {
   free,
   from_zero,
-  share,        ///< range 0 to 1
+  share,        ///< from 0 to 1
   logarithmic,  ///< for values that span orders of magnitude
 };
 
-/// Curves with a common axis: at least one curve, each with at least one value that the axis can show.
+/// Curves with a common axis. A panel has at least one curve, and each curve has at least one value that the axis can
+/// show.
 struct CurvePanel {
   std::string title;
   std::string unit;  ///< "" for no unit
@@ -36,12 +37,12 @@ struct CurvePanel {
 /// All curves of a run.
 struct Curves {
   std::vector<CurvePanel> panels;
-  /// Panels of constants as texts: "Largest standard deviation of a height: 10 cm".
+  /// Panels whose curves are constant, as texts: "Largest standard deviation of a height: 10 cm".
   std::vector<std::string> constants;
 };
 
 /// Returns panels of errors, standard deviations, shares, likelihoods, hyperparameters, numbers of the footprint and
-/// times. Quantities that the run lacks are left out; panels without any change become constants.
+/// times. Quantities that the run does not have are left out. Panels without any change become constants.
 Curves curves_of(const RecordedRun& recording, const History& history);
 
 }  // namespace palpate

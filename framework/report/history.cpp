@@ -26,13 +26,14 @@ TapMark mark_of(const RecordedRun& recording, std::size_t index, double desk, co
   return mark;
 }
 
-/// Returns whether the scores differ from all other maps that are shown.
+/// Returns whether the scores differ from all other maps of the page.
 bool own_scores(const MapsAtTap& now) {
   if (!now.has_scores || now.scores == now.uncertainty) return false;
   return now.has_weight() ? now.scores != now.exploration() : now.scores != now.probability;
 }
 
-/// Sets all that maps and surfaces of a moment have in common, after the taps that `playback` has replayed.
+/// Sets the fields that runs from above and from any side have in common, for the moment after the taps that `playback`
+/// has replayed.
 void set_common(RunAtTap& out, RunReplay& playback, const RecordedRun& recording) {
   const Belief& belief = playback.experiment().belief();
   out.taps = playback.taps();
@@ -48,7 +49,7 @@ void set_common(RunAtTap& out, RunReplay& playback, const RecordedRun& recording
   }
 }
 
-/// Returns the maps after the taps that `playback` has replayed, the first ones of `recording`.
+/// Returns the maps after the taps that `playback` has replayed; these are the first taps of `recording`.
 MapsAtTap maps_of(RunReplay& playback, const RecordedRun& recording) {
   Experiment& experiment = playback.experiment();
   Belief& belief = experiment.belief();
@@ -65,7 +66,7 @@ MapsAtTap maps_of(RunReplay& playback, const RecordedRun& recording) {
   out.uncertainty = belief.values(quantity::kUncertainty);
   const Row state{belief.state(Eigen::Index{0}).fields};
   const bool has_weight = belief.available().count(quantity::kLabelMean) != 0;
-  if (state.number("p") || !has_weight) {  // of a footprint that is not the label GP
+  if (state.number("p") || !has_weight) {  // The footprint is not the label GP.
     out.probability = belief.values(quantity::kObjectProbability);
   } else {
     out.weight = belief.values(quantity::kLabelMean);
@@ -76,10 +77,10 @@ MapsAtTap maps_of(RunReplay& playback, const RecordedRun& recording) {
   return out;
 }
 
-/// Returns contours of the true scene as it stands now; empty if the truth is not known.
+/// Returns contours of the true scene in its present state; empty if the truth is unknown.
 std::vector<Ring> true_contours(Experiment& experiment) {
   constexpr double kApart = 0.01;
-  constexpr double kOfGrid = 0.002;  // walls of 3 mm are whole
+  constexpr double kOfGrid = 0.002;  // metres; complete contours for walls of 3 mm
   const Scene* const truth = experiment.truth();
   return truth != nullptr ? contours(*truth, kApart, kOfGrid) : std::vector<Ring>{};
 }
@@ -130,7 +131,7 @@ void HistoryBuilder::add() { any_side_ ? add_surface() : add_maps(); }
 
 void HistoryBuilder::add_surface() {
   Experiment& experiment = playback_.experiment();
-  constexpr double kResolution = 0.0025;  // walls of 3 mm are complete
+  constexpr double kResolution = 0.0025;  // metres; complete surfaces for walls of 3 mm
   RunAtTap now;
   set_common(now, playback_, recording_);
   history_.surfaces.push_back(experiment.belief().surface(kResolution));
@@ -140,7 +141,7 @@ void HistoryBuilder::add_surface() {
     history_.true_contours = true_contours(experiment);
   history_.shown.push_back(now.taps);
   history_.moments.push_back(now);
-  // Largest number of values: more than a page can carry, and for a thousand taps gigabytes.
+  // Largest number of stored values. A page cannot hold more, and without a limit a thousand taps would need gigabytes.
   constexpr std::size_t kMost = 10'000'000;
   thin(kMost);
 }
@@ -182,7 +183,7 @@ void HistoryBuilder::thin(std::size_t most) {
   std::size_t numbers = 0;
   for (const MapSeries& map : history_.maps)
     numbers += map.frames.size() * static_cast<std::size_t>(map.frames.front().size());
-  constexpr std::size_t kOfAVertex = 10;  // with those of its triangles
+  constexpr std::size_t kOfAVertex = 10;  // numbers per vertex, including its share of the triangles
   for (const Surface& one : history_.surfaces) numbers += kOfAVertex * one.vertices.size();
   if (history_.shown.size() < 2 || numbers <= most) return;
   for (MapSeries& map : history_.maps) drop(map.frames);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// History of a run: belief, errors and next choice after each of its taps. All of it is computed from the recorded
-// taps, so runs need not store their maps.
+// History of a run: belief, errors and next choice after each of its taps. The history is computed from the recorded
+// taps alone, so a run need not store its maps.
 #pragma once
 
 #include "record/run_replay.hpp"
@@ -17,12 +17,12 @@
 
 namespace palpate {
 
-/// A tap as figures mark it.
+/// A tap as the figures mark it.
 struct TapMark {
   enum class Kind { on, off, failed };
   int tap = 1;
-  Kind kind = Kind::failed;  ///< by the label that the contact has at that moment
-  double x = 0.0;            ///< metres, as is `y`
+  Kind kind = Kind::failed;  ///< follows from the label that the contact has at that moment
+  double x = 0.0;            ///< position of the tap (x, y), metres
   double y = 0.0;
   double height = 0.0;  ///< metres; the height of the desk for a tap without a contact
 };
@@ -30,25 +30,25 @@ struct TapMark {
 /// State of a run after its first `taps` taps.
 struct RunAtTap {
   int taps = 0;
-  RunResult result;                  ///< the result if the run had ended here
+  RunResult result;                  ///< the result that the run would have if it ended here
   std::optional<TapRecord> next;     ///< the next tap; nullopt if no candidate is left, or if its choice is unknown
   bool is_next_known = true;         ///< false if a program chooses: reports do not start programs
   std::optional<double> next_along;  ///< from any side: path length of the next tap by the most probable particle
   std::vector<TapReading> suspected_outliers;  ///< contacts that may be outliers
-  double largest_deviation = 0.0;  ///< greatest standard deviation, metres: of the candidates' heights given all taps;
-                                   ///< from any side of the surface
+  /// Greatest standard deviation of the candidates' heights given all taps, or of a surface from any side; metres.
+  double largest_deviation = 0.0;
   /// Range of the label GP's mean over the candidates; nullopt if the footprint is not the weight.
   std::optional<double> least_weight, most_weight;
 };
 
-/// The same with the maps of the belief, one value per candidate.
+/// State of a run after its first `taps` taps, with the maps of the belief: one value per candidate.
 struct MapsAtTap : RunAtTap {
   std::vector<TapMark> marks;   ///< these taps in their order
   Eigen::VectorXd surface;      ///< reconstructed heights, metres
   Eigen::VectorXd deviation;    ///< standard deviation of the height, metres
   Eigen::VectorXd uncertainty;  ///< u
-  /// Either w, as the strategy reads it, if the footprint is the weight, or the footprint's p. The other vector is
-  /// empty.
+  /// If the footprint is the weight, `weight` is w as the strategy reads it, and `probability` is empty. Otherwise
+  /// `probability` is the footprint's p, and `weight` is empty.
   Eigen::VectorXd weight;
   Eigen::VectorXd probability;
   bool has_scores = true;  ///< whether the strategy gives scores
@@ -57,16 +57,17 @@ struct MapsAtTap : RunAtTap {
   Eigen::VectorXd exploration() const { return uncertainty.cwiseProduct(weight); }  ///< e, defined if there is a w
 };
 
-/// Returns the readers of a page: all that it shows, from the first tap on.
+/// Returns the quantities that a page reads, all from the first tap on.
 ReadPlan page_readers(const RecordedRun& recording);
 
-/// Returns the maps after each of these numbers of taps, which ascend from 1 to the number of all taps.
+/// Returns the maps after each of the given numbers of taps, which are ascending and between 1 and the number of all
+/// taps.
 std::vector<MapsAtTap> maps_at_taps(RunReplay& playback, const RecordedRun& recording, const std::vector<int>& taps);
 
-/// Returns "7 on the object, 10 on the desk, 1 failed"; without failed taps the last part is missing.
+/// Returns "7 on the object, 10 on the desk, 1 failed". Without failed taps the last part is missing.
 std::string count_words(const RunResult& result);
 
-/// A quantity over the candidates at several moments; all frames have the same number of cells.
+/// A map of one quantity at several moments. All frames have the same number of cells.
 struct MapSeries {
   std::string name;
   std::vector<Eigen::VectorXf> frames;
@@ -75,43 +76,46 @@ struct MapSeries {
 struct History {
   std::vector<RunAtTap> moments;  ///< before the first tap and after each tap
   std::vector<int> shown;         ///< indices of the moments with maps, ascending
-  /// Maps with a frame per shown moment. "height" is the reconstruction, metres. "deviation" is the standard deviation
-  /// of the height, metres, at most the largest of the height GP at any moment; the surface GP has a meaningless value
-  /// before the first contact with an object. "u"; "w", or "p" if the footprint is not the weight; "score" if the
-  /// scores equal neither these nor u w. Last, if the truth is known, "truth" in one frame, metres.
+  /// Maps with one frame per shown moment, in this order. "height" is the reconstruction, metres. "deviation" is the
+  /// standard deviation of the height, metres. It is limited to the largest value of the height GP at any moment,
+  /// because the value of the surface GP is meaningless before the first contact with an object. Then follow "u", and
+  /// "w", or "p" if the footprint is not the weight. "score" follows if the scores equal neither these maps nor u w.
+  /// The last map is "truth" in metres, with a single frame, if the truth is known.
   std::vector<MapSeries> maps;
   Eigen::VectorXd x, y;  ///< coordinates of the maps' columns and rows, metres; maps are stored row by row
-  /// From any side, instead of maps: the surface at each shown moment, empty before the first contact with an object.
-  /// The contours of the true surface are those at the last moment; empty if the truth is unknown.
+  /// Surfaces of a run from any side, one per shown moment, instead of maps. A surface is empty before the first
+  /// contact with an object. `true_contours` are the contours of the true surface at the last moment; they are empty if
+  /// the truth is unknown.
   std::vector<Surface> surfaces;
   std::vector<Ring> true_contours;
-  /// Reason why the truth is no longer known (RunReplay::truth_lost()); the errors are then those of the record.
+  /// Reason why the truth is no longer known (RunReplay::truth_lost()). If it is set, the errors are the recorded
+  /// errors.
   std::optional<Error> truth_lost;
 };
 
-/// Callback with the number of taps done and the number of all taps.
+/// Callback with the number of finished taps and the number of all taps.
 using OnProgress = std::function<void(int done, int all)>;
 
-/// Largest number of columns or rows of a map; larger grids are shown with every second, third, ... cell.
+/// Largest number of columns or rows of a map. Of a larger grid, maps show every second, third, ... row and column.
 inline constexpr int kMostCellsAcross = 128;
 
-/// Builds a history tap by tap. The history so far can be read while the run goes on.
+/// Builds a history tap by tap. Other code can read the history so far while the run goes on.
 class HistoryBuilder {
  public:
   /// Begins before the first tap. `environment` and `recording` must outlive the object; `recording` has at least one
-  /// tap and may grow. Throws Error as RunReplay does.
+  /// tap and may grow. Throws the errors of RunReplay.
   HistoryBuilder(const RunEnvironment& environment, const RecordedRun& recording);
 
-  /// Returns the number of taps that were added.
+  /// Returns the number of taps that advance() has added.
   int taps() const { return playback_.taps(); }
   bool has_own_scores() const { return own_scores_; }
   /// Adds the next recorded tap, which must exist.
   void advance();
-  /// If maps or surfaces hold more numbers than `most`, drops those of every second moment, but never those of the
-  /// last.
+  /// Removes maps and surfaces of every second moment if they hold more than `most` numbers. The last moment always
+  /// keeps them.
   void thin(std::size_t most);
 
-  /// Returns the history so far, with maps of the moments from `moment` on: the history of a run that ends here.
+  /// Returns the history so far. Only moments from `moment` on have maps.
   History since(int moment) const;
 
  private:
@@ -130,7 +134,7 @@ class HistoryBuilder {
   History history_;                       ///< with unlimited deviations; since() limits them
 };
 
-/// Builds the history of a whole recorded run. Throws Error as RunReplay does.
+/// Builds the history of a whole recorded run. Throws the errors of RunReplay.
 History make_history(const RunEnvironment& environment, const RecordedRun& recording, const OnProgress& progress);
 
 }  // namespace palpate

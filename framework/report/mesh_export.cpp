@@ -15,7 +15,7 @@ namespace palpate {
 namespace {
 
 /// Returns the descent of the heights along one axis by central differences, one-sided at the edges. `at` is the
-/// position among `count`, and neighbours are `step` indices apart.
+/// position along the axis among `count`. Neighbours are `step` indices apart.
 double descent(const Eigen::VectorXd& heights, const Eigen::VectorXd& places, int index, int at, int count, int step) {
   const int before = std::max(at - 1, 0);
   const int behind = std::min(at + 1, count - 1);
@@ -48,7 +48,7 @@ Surface surface_mesh(const CandidateGrid& candidates, const Eigen::VectorXd& hei
 
 std::string header_text(const std::string& text) {
   constexpr std::size_t kLongest = 200;
-  static const std::string end = "end_header";  // some readers find it anywhere in a line
+  static const std::string end = "end_header";  // Some readers end the header at this word anywhere in a line.
   std::string out = text.substr(0, kLongest);
   for (char& c : out) {
     if (static_cast<unsigned char>(c) < 0x20 || static_cast<unsigned char>(c) > 0x7e) c = '?';
@@ -77,7 +77,7 @@ std::string surface_ply(const ReconstructedSurface& surface, const std::string& 
       "property float quality\nproperty float object_probability\n",
       header_text(run), mesh.vertices.size());
   if (surface.true_height) out += "property float true_height\n";
-  if (!mesh.triangles.empty())  // some readers reject an empty list of faces
+  if (!mesh.triangles.empty())  // Some readers reject an empty list of faces.
     out += fmt::format("element face {}\nproperty list uchar int vertex_indices\n", mesh.triangles.size());
   out += "end_header\n";
   Eigen::Index i = 0;

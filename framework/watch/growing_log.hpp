@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A run's record that another process writes.
+// Reader of a run's record while another process writes it.
 #pragma once
 
 #include "record/record_reader.hpp"
@@ -12,7 +12,7 @@
 
 namespace palpate {
 
-/// The lines of a growing record. A line without its line end is ignored: a kill leaves such a line behind, and
+/// The lines of a growing record. A line without a line end is ignored. A killed process leaves such a line behind, and
 /// `palpate resume` removes it.
 class GrowingLog {
  public:
@@ -21,19 +21,20 @@ class GrowingLog {
   const std::filesystem::path& file() const { return reader_.file(); }
 
   /// Returns the lines that were added since the last call. If the file is gone or no longer begins with the known
-  /// lines, sets `anew` and returns all its lines. Throws Error as RecordReader does; after a change of the file, the
-  /// next call then begins at its start.
+  /// lines, sets `anew` and returns all lines of the file. Throws the errors of RecordReader. After an error and a
+  /// change of the file, the next call begins at the start of the file.
   std::vector<RecordLine> read(bool& anew);
 
   /// Makes the next read() begin at the start of the file.
   void restart() { stamp_ = {}, known_.clear(); }
 
  private:
-  using Stamp = std::tuple<std::uint64_t, std::uint64_t, std::int64_t, std::int64_t>;  ///< inode, size, time
+  /// inode, size and time of change of the file
+  using Stamp = std::tuple<std::uint64_t, std::uint64_t, std::int64_t, std::int64_t>;
 
   RecordReader reader_;
   Stamp stamp_{};
-  std::string known_;  ///< all lines so far, to detect any rewriting of the file
+  std::string known_;  ///< text of all lines so far, to detect any rewriting of the file
 };
 
 }  // namespace palpate

@@ -7,22 +7,23 @@
 
 namespace palpate {
 
-/// A run or a sweep with a page. The page begins with page() and asks for news() again and again, with its position in
-/// the record: letters, digits and dots that only this object interprets. No member throws Error; its page shows what
-/// is wrong with a record.
+/// A run or a sweep with a page. The page begins with the HTML of page() and then repeatedly requests news(). Each
+/// request has the page's position in the record, a text of letters, digits and dots that only this object interprets.
+/// No member throws Error. Instead, the page shows the problem of a damaged record.
 class LiveRecord {
  public:
   virtual ~LiveRecord() = default;
 
-  /// Reads changes of the record for about this many seconds; a single tap may take longer. Returns whether more can be
-  /// read at once.
+  /// Reads changes of the record for about this many seconds; a single tap may take longer. Returns whether the record
+  /// has more changes to read.
   virtual bool look(double seconds) = 0;
 
-  /// Returns the HTML page as of the last look().
+  /// Returns the HTML page in the state of the last look().
   virtual std::string page() = 0;
 
-  /// Returns an update for a page at position `at` as of the last look(): JSON on one line with the new position "at";
-  /// nullopt if the page is up to date. If the record was replaced, the update tells the page to reload.
+  /// Returns an update for a page that is at position `at`, in the state of the last look(). The update is JSON on one
+  /// line with the new position "at". Returns nullopt if the page is up to date. If another record has replaced this
+  /// one, the update makes the page reload.
   virtual std::optional<std::string> news(const std::string& at) = 0;
 
   /// Returns whether a process works on the record.

@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Largest number of values in all kept maps: about 10 MB in a page, and little for a browser.
+/// Largest number of values in all stored maps. They take about 10 MB in a page, which every browser can hold.
 constexpr std::size_t kMostNumbers = 4'000'000;
 
 struct Position {
@@ -72,13 +72,14 @@ bool RunFollower::look(double seconds) {
 }
 
 void RunFollower::read_record() {
-  // Reads the lock before the record: a process that ends in between has recorded all its taps.
+  // The lock is read before the record. If the process ends in between, it has then recorded all its taps.
   const bool held = is_running(directory_);
   const std::optional<Row> summary = read_outcome(directory_);
   const std::string standing = (held ? "held " : "") + (summary ? to_json(*summary) : "");
   bool anew = false;
   std::vector<RecordLine> lines = log_.read(anew);
-  if (!lines.empty() && !trouble_.empty()) {  // A record that failed to replay may have been replaced.
+  // If the record could not be replayed, another record may have replaced it.
+  if (!lines.empty() && !trouble_.empty()) {
     log_.restart();
     lines = log_.read(anew);
     anew = true;
@@ -97,7 +98,7 @@ void RunFollower::read_record() {
   if (recording_ && pending_.empty()) recording_->summary = summary;
 }
 
-/// Adds the times of taps, which are written after the taps.
+/// Adds the times of taps, because a tap's time is written after the tap.
 void RunFollower::add_times() {
   std::vector<TapTimes>& known = recording_->timings;
   if (known.size() == timings_.size()) return;
@@ -118,7 +119,7 @@ void RunFollower::replay_next_tap() {
   const bool own_scores = builder_->has_own_scores();
   builder_->advance();
   builder_->thin(kMostNumbers);
-  // Pages lack the new map of scores, so they begin again.
+  // The present pages lack the new map of scores and must reload.
   if (builder_->has_own_scores() != own_scores) ++generation_;
   if (pending_.empty()) recording_->summary = read_outcome(directory_);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A run that goes on, replayed tap by tap while its record grows.
+// A run that is not finished, replayed tap by tap while its record grows.
 #pragma once
 
 #include "record/run_replay.hpp"
@@ -14,10 +14,11 @@
 
 namespace palpate {
 
-/// Follows the run in a directory, which may have no tap yet, and only reads. Its page equals the run's report, except
-/// that long runs lose the maps of some moments.
+/// Follows the run in a directory, which may have no tap yet. Writes nothing. The page equals the report of the run,
+/// except that it lacks the maps of some moments of a long run.
 ///
-/// A run that is killed and resumed goes on. If another record replaces it (--force), pages begin again.
+/// If the run is killed and resumed, the page continues. If another record replaces the record (--force), the pages
+/// start again.
 class RunFollower final : public LiveRecord {
  public:
   /// `environment` must outlive the object.
@@ -45,9 +46,9 @@ class RunFollower final : public LiveRecord {
   std::unique_ptr<RecordedRun> recording_;   ///< null before the first tap
   std::unique_ptr<HistoryBuilder> builder_;  ///< has as many taps as recording_
   std::string trouble_;                      ///< error of the present record, "" for none
-  std::string standing_;                     ///< lock and summary at the last look
-  int generation_ = 1;  ///< counts replacements of the record; pages of another generation begin again
-  int revision_ = 0;    ///< counts changes without a new tap
+  std::string standing_;                     ///< state of lock and summary at the last look
+  int generation_ = 1;  ///< number of replacements of the record; pages of another generation reload
+  int revision_ = 0;    ///< number of changes without a new tap
 };
 
 }  // namespace palpate

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The only file that uses Boost.Beast and Boost.Asio.
+// This is the only file that uses Boost.Beast and Boost.Asio.
 #include "watch/server.hpp"
 
 #include "record/build_info.hpp"
@@ -42,14 +42,17 @@ using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 
-constexpr milliseconds kLookEvery(100);  ///< between looks at a record, so that a tap is shown within half a second
-constexpr double kLookFor = 0.05;        ///< seconds per look, during which requests wait
-constexpr double kFirstLook = 1.0;       ///< seconds of the look before a page is made, enough for most runs
-constexpr seconds kAnswerWithin(25);     ///< longest wait of a request for news
-constexpr seconds kMostSilence(10);      ///< longest silence of a connection that asks or reads
-constexpr seconds kTokenWithin(5);       ///< time for a connection to present the token
+/// time between looks at a record, so that pages show a tap within half a second
+constexpr milliseconds kLookEvery(100);
+constexpr double kLookFor = 0.05;     ///< seconds per look, during which requests wait
+constexpr double kFirstLook = 1.0;    ///< seconds of the look before a page is made; most runs need less
+constexpr seconds kAnswerWithin(25);  ///< longest wait of a request for news
+/// longest time without data on a connection that sends a request or reads a response
+constexpr seconds kMostSilence(10);
+constexpr seconds kTokenWithin(5);  ///< time for a connection to present the token
 constexpr std::size_t kMaxConnections = 64;
-constexpr std::size_t kMaxUnauthenticated = 16;  ///< of them without the token; the oldest one is closed for a new one
+/// largest number of connections that have not presented the token; a new one then replaces the oldest
+constexpr std::size_t kMaxUnauthenticated = 16;
 constexpr std::uint32_t kMostHeader = 16 * 1024;
 
 /// Returns 128 random bits as hex digits.
@@ -71,7 +74,7 @@ bool same_in_constant_time(std::string_view said, std::string_view token) {
   return differ == 0;
 }
 
-/// Returns a Host without its port, which differs behind a tunnel; "" for an invalid one.
+/// Returns a Host field without its port, because the port differs behind a tunnel. Returns "" for an invalid field.
 std::string host_of(std::string_view text) {
   const auto end = text.rfind(':');
   const bool bare = end == std::string_view::npos || text.find(']', end) != std::string_view::npos;
@@ -81,7 +84,7 @@ std::string host_of(std::string_view text) {
 }
 
 struct PageRequest {
-  std::string place;              ///< as in Site::find()
+  std::string place;              ///< place as in Site::find()
   std::optional<std::string> at;  ///< position of a page that asks for news
   bool now = false;
 };
@@ -146,7 +149,7 @@ class Server::Impl::Connection : public std::enable_shared_from_this<Connection>
   void begin() {
     parser_.header_limit(kMostHeader);
     stream_.expires_after(kTokenWithin);
-    // Only the header is read; bodies have no use.
+    // Only the header is read, because no request needs a body.
     http::async_read_header(stream_, buffer_, parser_, [self = shared_from_this()](beast::error_code trouble, auto) {
       if (trouble) return self->close();
       self->answer(self->parser_.get());
@@ -160,7 +163,7 @@ class Server::Impl::Connection : public std::enable_shared_from_this<Connection>
   /// Returns the record whose news the connection waits for; null if it does not wait.
   const std::shared_ptr<LiveRecord>& waits_for() const { return waits_for_; }
 
-  /// Sends the news, or 204 if there were none for kAnswerWithin.
+  /// Sends the news. If there were none for kAnswerWithin, sends 204.
   void send_news() {
     if (std::optional<std::string> news = waits_for_->news(at_)) {
       reply(http::status::ok, "application/json", std::move(*news));
@@ -223,7 +226,8 @@ class Server::Impl::Connection : public std::enable_shared_from_this<Connection>
     stream_.expires_after(kMostSilence);
     http::async_write(stream_, response_, [self = shared_from_this()](beast::error_code trouble, auto) {
       if (trouble || self->awaits_close_) return self->close();
-      // Unread data, such as the body of a POST, would reset the connection before the response is read.
+      // Without this, unread data such as the body of a POST would reset the connection before the client reads the
+      // response.
       beast::error_code none;
       self->stream_.socket().shutdown(tcp::socket::shutdown_send, none);
       self->stream_.expires_after(kMostSilence);
@@ -231,8 +235,8 @@ class Server::Impl::Connection : public std::enable_shared_from_this<Connection>
     });
   }
 
-  /// Waits until the client closes the connection, and ignores what it sends. A connection that waits for news is
-  /// closed then.
+  /// Waits until the client closes the connection, and ignores further data. If this connection waits for news, it is
+  /// then closed.
   void await_close() {
     if (awaits_close_) return;
     awaits_close_ = true;
@@ -259,7 +263,7 @@ class Server::Impl::Connection : public std::enable_shared_from_this<Connection>
 
 void Server::Impl::accept() {
   acceptor.async_accept([this](beast::error_code trouble, tcp::socket socket) {
-    if (trouble) {  // mostly too many open files, which is temporary
+    if (trouble) {  // the most frequent cause is too many open files, which is temporary
       opening.expires_after(kLookEvery);
       opening.async_wait([this](beast::error_code ended) {
         if (!ended) accept();
@@ -276,7 +280,7 @@ void Server::Impl::accept() {
   });
 }
 
-/// Keeps connections without the token, however many, from excluding clients with the token.
+/// Limits the connections without the token, so that they cannot exclude clients that have the token.
 void Server::Impl::drop_oldest_unauthenticated() {
   std::shared_ptr<Connection> oldest;
   std::size_t unauthenticated = 0;
@@ -292,7 +296,7 @@ bool Server::Impl::is_own_name(const std::string& host) const {
   beast::error_code none;
   const auto number = asio::ip::make_address(host, none);
   if (none) return host == "localhost" || (!acceptor.local_endpoint().address().is_loopback() && host == host_name());
-  // A website cannot ask for a numeric address under its own name.
+  // A numeric address is always allowed, because a website cannot send requests for it under the website's own name.
   return number.is_loopback() || !acceptor.local_endpoint().address().is_loopback();
 }
 
@@ -361,7 +365,7 @@ void Server::run() {
   Impl& impl = *impl_;
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
     if (signal == SIGHUP && std::signal(SIGHUP, SIG_DFL) == SIG_IGN) {
-      std::signal(SIGHUP, SIG_IGN);  // under nohup
+      std::signal(SIGHUP, SIG_IGN);  // nohup has set this
     } else {
       impl.signals.add(signal);
     }

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
-// HTTP server for the pages of a Site, which only reads.
+// HTTP server for the pages of a Site. It cannot change a record.
 //
-// An address is http://HOST:PORT/TOKEN/PLACE, with a random token. Below it are the page and `news?at=POSITION`. The
-// latter is answered when there is an update for a page at this position, or after a while by 204; with `&now` at once.
-// Pages ask one request at a time (long polling). An open stream of events would occupy one of a browser's six
-// connections to a server, and would fill up while a page draws slowly.
+// An address is http://HOST:PORT/TOKEN/PLACE, with a random token. At this address are the page and `news?at=POSITION`.
+// The server answers a request for news when there is an update for a page at this position, or with 204 after a while.
+// With `&now`, it answers at once. Each page has one request at a time (long polling). A stream of events would instead
+// occupy one of the six connections that a browser has per server, and would fill up while a page draws slowly.
 //
-// The server answers with an empty 403 to requests without the token, and to requests that call the server by another
-// name, such as those of a website whose name points to this machine. Unknown places get 404, methods other than GET
-// 405. Headers forbid caches, frames and referrers.
+// The server answers with an empty 403 to requests without the token. It does the same for requests that address it by
+// a foreign name, such as requests of a website whose name resolves to this machine. Unknown places get the status
+// 404, and methods other than GET the status 405. Headers forbid caching, frames and referrers.
 //
 // One thread suffices: replaying a tap takes milliseconds, and the other cores are for the run.
 #pragma once
@@ -21,10 +21,10 @@
 namespace palpate {
 
 struct ServerOptions {
-  std::string address = "127.0.0.1";  ///< numeric; any machine that reaches this address reaches the server
-  int port = 0;                       ///< 0: any free port
-  /// Seconds without a working process and without requests after which the server ends; 0: never. Longer than a
-  /// browser suspends a page in the background.
+  std::string address = "127.0.0.1";  ///< numeric address; any machine that can reach this address can reach the server
+  int port = 0;                       ///< 0 stands for any free port
+  /// Number of seconds after which the server ends if no process works on the record and no request arrives. 0 stands
+  /// for never. It must be longer than the time for which a browser suspends a page in the background.
   int patience = 0;
 };
 
@@ -36,10 +36,10 @@ class Server {
 
   /// Returns the address of the first page, with the token.
   std::string url() const;
-  /// Returns whether other machines can reach the server.
+  /// Returns whether the server accepts connections from other machines.
   bool is_open_to_others() const;
 
-  /// Serves until SIGINT, SIGTERM or SIGHUP (unless ignored), or until patience ends.
+  /// Serves until SIGINT, SIGTERM, SIGHUP (unless ignored), or the end of `patience`.
   void run();
 
  private:

@@ -14,7 +14,7 @@ Site::Site(const RunEnvironment& environment, const std::filesystem::path& direc
     sweep_ = read_sweep(directory);
     main_ = std::make_shared<SweepFollower>(*sweep_);
   } else {
-    read_run_config(directory);  // throws if there is no run
+    read_run_config(directory);  // throws Error if there is no run
     main_ = std::make_shared<RunFollower>(environment, directory);
   }
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The pages of a directory: that of a run, or those of a sweep and its jobs.
+// The pages of a directory: the page of a run, or the pages of a sweep and its jobs.
 #pragma once
 
 #include "record/run.hpp"
@@ -16,15 +16,16 @@
 
 namespace palpate {
 
-/// Pages of one directory. Only jobs in the manifest have pages; no part of an address becomes part of a path.
+/// The pages of one directory. Only jobs of the manifest have pages. No part of a requested address becomes part of a
+/// path.
 class Site {
  public:
   /// Throws Error for a directory without a run or sweep, and for a damaged sweep. `environment` must outlive the
   /// object.
   Site(const RunEnvironment& environment, const std::filesystem::path& directory);
 
-  /// Returns the record at `place`: "" for the directory itself, "jobs/ID/" for a job of a sweep; null for any other
-  /// place. The last eight jobs stay in memory.
+  /// Returns the record at `place`. The place is "" for the directory itself and "jobs/ID/" for a job of a sweep.
+  /// Returns null for any other place. The eight jobs that were used last stay in memory.
   std::shared_ptr<LiveRecord> find(std::string_view place);
 
   /// Returns whether a process works on the record.

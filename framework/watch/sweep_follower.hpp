@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A sweep that goes on.
+// A sweep that is not finished.
 #pragma once
 
 #include "report/page/json.hpp"
@@ -11,8 +11,8 @@
 
 namespace palpate {
 
-/// Follows a sweep by the records of its jobs. It reads them every two seconds; in large sweeps more rarely, so that
-/// reading takes at most a twentieth of the time.
+/// Follows a sweep by the records of its jobs. It reads the records every two seconds, or less often in large sweeps,
+/// so that reading takes at most a twentieth of the time.
 class SweepFollower final : public LiveRecord {
  public:
   explicit SweepFollower(Sweep sweep) : sweep_(std::move(sweep)) {}

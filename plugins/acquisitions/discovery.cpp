@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Acquisition for taps from any side: expected decrease of the mean surface distance in metres. A tap discovers
-// untouched parts or reduces the uncertainty of the known surface.
+// Acquisition for taps from any side. The score is the expected decrease of the mean surface distance by the tap, in
+// metres. A tap decreases this distance in two ways: it finds untouched parts, and it reduces the uncertainty of the
+// known surface.
 #include <palpate/acquisition.hpp>
 #include <palpate/plugin.hpp>
 
@@ -31,7 +32,7 @@ class Discovery final : public Acquisition {
   double prior_scale() const override { return 0.001; }
 
   void score(const BeliefView& belief, VectorOut out) const override {
-    constexpr double kUsual = 0.3;  // metres, usual path length
+    constexpr double kUsual = 0.3;  // typical path length, metres
     out = belief.values(quantity::kExpectedDiscovery) + belief.values(quantity::kStdReduction);
     if (options_.travel_cost_exponent > 0.0) {
       const auto distance = belief.values(quantity::kExpectedDistance).array();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Entropy of the footprint in bits. It is largest where the presence of an object is least certain. With a footprint
-// over whole outlines, this is at uncertain edges.
+// Entropy of the footprint in bits. The entropy is largest where the presence of an object is least certain. If the
+// footprint consists of whole outlines, these positions are at uncertain edges.
 #include <palpate/acquisition.hpp>
 #include <palpate/math.hpp>
 #include <palpate/plugin.hpp>

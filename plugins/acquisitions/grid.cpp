@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Baseline: centres of the cells of a coarse lattice, row by row, then of lattices with twice as many points per side.
+// Baseline that taps the centres of the cells of a coarse lattice, row by row. Lattices with twice as many points per
+// side follow.
 #include <palpate/acquisition.hpp>
 #include <palpate/math.hpp>
 #include <palpate/plugin.hpp>
@@ -28,8 +29,8 @@ class GridSearch final : public Acquisition {
   GridSearch(const Options& options, const Context& context) : count_(options.count), area_(context.scene.area()) {}
 
   QuantitySet reads() const override { return {quantity::kDeskPosition}; }
-  /// Returns 1 at the next point, decreasing to 0 at the area's far corner. The nearest candidate has the highest
-  /// score.
+  /// Scores a candidate by its distance from the next lattice point. The score is 1 at this point and decreases to 0 at
+  /// the corner of the area that is farthest away. The nearest candidate has the highest score.
   void score(const BeliefView& belief, VectorOut out) const override {
     const auto [x, y] = due(belief.taps().count - belief.taps().initial);
     const Points3& places = belief.candidates().starts;
@@ -39,7 +40,7 @@ class GridSearch final : public Acquisition {
   double prior_scale() const override { return 1.0; }
 
  private:
-  /// Returns the position of tap `n`, counted from 0 after the initial taps.
+  /// Returns the lattice point of tap `n`, where `n` counts the taps after the initial ones from 0.
   Target due(std::int64_t n) const {
     std::int64_t side = count_;
     while (n >= side * side) {

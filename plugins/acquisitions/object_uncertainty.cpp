@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Standard deviation of the height relative to the prior, times the probability of an object. The paper uses the
-// variance, which decreases too fast compared with the entropy of an outline.
+// Standard deviation of the height relative to the prior, multiplied by the probability of an object. The paper uses
+// the variance instead, which decreases too fast compared with the entropy of an outline.
 #include <palpate/acquisition.hpp>
 #include <palpate/plugin.hpp>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Baseline: scores are uniform in (0, 1), so the best candidate is a uniform draw.
+// Baseline with random scores, uniform in (0, 1). The best candidate is therefore a uniform draw.
 #include <palpate/acquisition.hpp>
 #include <palpate/plugin.hpp>
 
@@ -11,7 +11,8 @@ class RandomSearch final : public Acquisition {
   RandomSearch(const Options&, const Context& context) : seed_(context.seed) {}
 
   QuantitySet reads() const override { return {}; }
-  /// Draws from a stream per tap: the score stays a pure function of the belief, and a resumed run draws the same.
+  /// Each tap has a separate stream of random numbers. The score therefore stays a pure function of the belief, and a
+  /// resumed run draws the same numbers.
   void score(const BeliefView& belief, VectorOut out) const override {
     Random random(seed_, "acquisition/random", static_cast<std::uint64_t>(belief.taps().count));
     for (double& one : out) one = random.uniform() + 0x1.0p-54;

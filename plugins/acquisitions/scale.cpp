@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Score of another acquisition times a factor, for example its weight in a sum.
+// The score of another acquisition, multiplied by a factor, for example the weight of this acquisition in a sum.
 #include <palpate/acquisition.hpp>
 #include <palpate/plugin.hpp>
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Expected reduction of the footprint's total variance by one tap. The entropy of a position measures only its own
-// uncertainty. The sampled outlines also show how much a tap determines other positions.
+// Expected reduction of the total variance of the footprint by one tap. The entropy of a position measures only the
+// uncertainty at this position. The sampled outlines also show how much a tap at this position determines other
+// positions.
 #include <palpate/acquisition.hpp>
 #include <palpate/plugin.hpp>
 
@@ -14,12 +15,13 @@
 #define HWY_TARGET_INCLUDE "acquisitions/variance_reduction.cpp"
 #include "math/highway.hpp"
 
-// Compiled for each instruction set, because most of the time is bit counting, for which some have an instruction.
+// The loop is compiled for each instruction set. It spends most of its time on bit counting, for which some instruction
+// sets have an instruction.
 HWY_BEFORE_NAMESPACE();
 namespace palpate::acquisitions::HWY_NAMESPACE {
 namespace {
 
-/// Counts the common bits of `here` and each of `count` other rows of `words` words.
+/// Computes the number of common bits of `here` and each of `count` other rows. A row has `words` words.
 void count_common(const std::uint64_t* here, std::ptrdiff_t words, const std::uint64_t* others, std::ptrdiff_t count,
                   int* out) {
   for (std::ptrdiff_t i = 0; i < count; ++i, others += words) {
@@ -38,18 +40,18 @@ namespace palpate::acquisitions {
 
 namespace {
 
-/// One column per position, one bit per outline: whether the outline covers the position.
+/// Bits for pairs of an outline and a position: 1 if the outline covers the position. There is one column per position.
 using Words = Eigen::Matrix<std::uint64_t, Eigen::Dynamic, Eigen::Dynamic>;
 using Counts = Eigen::Array<int, Eigen::Dynamic, 1>;
 
-/// Returns for each position the number of outlines that cover it and are set in `here`.
+/// Returns for each position how many of the outlines whose bit is set in `here` cover it.
 Counts common(const std::uint64_t* here, const Words& holds) {
   Counts out(holds.cols());
   PALPATE_DISPATCH(count_common)(here, holds.rows(), holds.data(), holds.cols(), out.data());
   return out;
 }
 
-/// Returns at most `most` elements, evenly spaced.
+/// Returns at most `most` elements of `all`, evenly spaced.
 std::vector<int> sample_of(const std::vector<int>& all, std::size_t most) {
   const std::size_t step = (all.size() + most - 1) / most;
   std::vector<int> out;
@@ -92,7 +94,7 @@ class VarianceReduction final : public Acquisition {
   void score(const BeliefView& belief, VectorOut out) const override {
     const HypothesisSample& sample = belief.hypotheses();
     if (sample.count == 0) {
-      // Without hypotheses a tap is informative about its own position only.
+      // Without hypotheses, a tap informs only about its own position.
       const Eigen::ArrayXd p = belief.values(quantity::kObjectProbability).array();
       out = p * (1.0 - p);
       return divide_by(out.maxCoeff(), out);
@@ -106,21 +108,21 @@ class VarianceReduction final : public Acquisition {
   double prior_scale() const override { return 1.0; }
 
  private:
-  static constexpr double kUsualSide = 0.23;  // metres, side of the area for which `new_object_weight` is stated
+  static constexpr double kUsualSide = 0.23;  // side of the area for which `new_object_weight` is stated, metres
 
   static void divide_by(double most, VectorOut out) {
     if (most > 0.0) out /= most;
   }
 
-  /// Adds the reductions for known objects to `out` and returns the largest one.
+  /// Adds the variance reductions for known objects to `out`, and returns the largest of them.
   static double add_reductions(const HypothesisSample& sample, double extent_of_place, VectorOut out) {
     const std::vector<std::uint64_t> all(static_cast<std::size_t>(sample.holds.rows()), ~std::uint64_t{0});
     const Counts held = common(all.data(), sample.holds);
-    std::vector<int> open;  // positions with uncertain coverage
+    std::vector<int> open;  // positions that some outlines cover and others do not
     for (int i = 0; i < held.size(); ++i) {
       if (held(i) > 0 && held(i) < sample.count) open.push_back(i);
     }
-    // On a fine grid, a part of the positions and of the taps is sufficient.
+    // On a fine grid, a subset of the positions and of the taps suffices.
     constexpr std::size_t kPlaces = 128;
     constexpr std::size_t kTaps = 512;
     const std::vector<int> places = sample_of(open, kPlaces);
@@ -141,7 +143,7 @@ class VarianceReduction final : public Acquisition {
   }
 
   Options options_;
-  double area_;  ///< of the desk, square metres
+  double area_;  ///< area of the desk, square metres
 };
 
 PALPATE_PLUGIN(Acquisition, VarianceReduction, "variance_reduction",

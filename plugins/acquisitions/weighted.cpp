@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The paper's exploration function e(x) = u(x) w(x) (Sun and Min 2021, section III), with w from the label GP. Prior
-// mean and clipping of w are options of that GP: `label: {prior_mean, clip}`.
+// The paper's exploration function e(x) = u(x) w(x) (Sun and Min 2021, section III). The label GP has w. The options
+// `label: {prior_mean, clip}` set the prior mean and the clipping of w.
 #include <palpate/acquisition.hpp>
 #include <palpate/plugin.hpp>
 
@@ -15,7 +15,7 @@ class Weighted final : public Acquisition {
   void score(const BeliefView& belief, VectorOut out) const override {
     out = belief.values(quantity::kUncertainty).cwiseProduct(belief.values(quantity::kLabelMean));
   }
-  /// Before any tap u is 1, and w is a probability.
+  /// Before any tap, u is 1 and w is a probability.
   double prior_scale() const override { return 1.0; }
 };
 

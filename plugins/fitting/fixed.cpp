@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The paper's fitting: the hyperparameters of the config stay.
+// The fitting of the paper, which keeps the hyperparameters of the config.
 #include <palpate/fitting.hpp>
 #include <palpate/plugin.hpp>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Product of kernels: heights are correlated only if every factor correlates them, for example one factor per axis.
+// Product of kernels. Heights are correlated only if every factor correlates them. An example is one factor per axis.
 #include "composed.hpp"
 
 namespace palpate::kernels {
@@ -11,8 +11,9 @@ struct Multiply {
   static void apply(Whole whole, const Part& part) {
     whole *= part;
   }
-  /// Derivatives of a product: those of this part times the previous values, and the previous ones times this value.
-  /// Without division, values of 0 cause no error.
+  /// Computes the derivatives of a product: the derivatives of this part times the previous values, and the previous
+  /// derivatives times the values of this part. The product rule is used without division, so values of 0 cause no
+  /// error.
   template <class Slopes, class Own>
   static void join_slopes(Slopes before, Own& own, const MatrixOut& whole, const Eigen::MatrixXd& part) {
     const Eigen::Index m = whole.cols();

@@ -48,7 +48,8 @@ class RationalQuadraticShape {
   }
 
  private:
-  /// Returns t with an upper bound, because with a small alpha the kernel is not yet 0 where the quotient overflows.
+  /// Returns t with an upper bound. With a small alpha, the quotient can overflow at distances at which the kernel is
+  /// not yet 0.
   double bounded_t(double r2) const { return std::min(r2 / (2.0 * alpha_), 1e300); }
 
   double alpha_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Kernel times a constant, for example as a term of a sum.
+// A kernel multiplied by a constant, for example as a term of a sum.
 #include <palpate/kernel.hpp>
 #include <palpate/plugin.hpp>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Sum of kernels, for a surface that is a sum of surfaces, for example a broad swell and fine texture.
+// Sum of kernels. It models a surface that is a sum of surfaces, for example a smooth surface with fine texture.
 #include "composed.hpp"
 
 namespace palpate::kernels {

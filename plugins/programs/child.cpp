@@ -48,23 +48,24 @@ class NoSigpipe {
   sigset_t before_{};
 };
 
-/// Waits for `events` of a descriptor until `until`, but at most for kPollInterval. Returns whether an event occurred.
+/// Waits for `events` of a descriptor until `until`, but not longer than kPollInterval. Returns whether an event
+/// occurred.
 bool wait_for_event(const Descriptor& descriptor, short events, Clock::time_point until) {
   const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(until - Clock::now()) +
-                    std::chrono::milliseconds(1);  // rounded up to avoid a busy loop at the end
+                    std::chrono::milliseconds(1);  // The time is rounded up, which avoids a busy loop at the end.
   const auto wait = std::clamp(left, std::chrono::milliseconds(0), kPollInterval);
   pollfd one{descriptor.number(), events, 0};
   return ::poll(&one, 1, until <= Clock::now() ? 0 : static_cast<int>(wait.count())) > 0;
 }
 
-/// Returns process id and parent id of all running processes of this machine.
+/// Returns the process id and the parent's id of each running process of this machine.
 std::vector<std::pair<pid_t, pid_t>> processes() {
   std::vector<std::pair<pid_t, pid_t>> out;
   for (const std::filesystem::path& folder : list_folder("/proc")) {
     const std::string name = folder.filename().string();
     if (name.find_first_not_of("0123456789") != std::string::npos) continue;
     const std::string line = read_bounded(folder / "stat", kMostSystemBytes, Origin::user).text;
-    // Format: PID (NAME) STATE PARENT ...; NAME may contain any character.
+    // The format is PID (NAME) STATE PARENT ..., where NAME may contain any character.
     const std::size_t behind = line.rfind(')');
     if (behind == std::string::npos || behind + 4 > line.size()) continue;
     if (line[behind + 2] == 'Z' || line[behind + 2] == 'X') continue;
@@ -83,7 +84,7 @@ bool carries(pid_t pid, const std::string& mark) {
 
 Child::Child(Program program, const std::string& stderr_file, const Descriptor& kept) : stderr_(stderr_file) {
   static std::atomic<int> count{0};
-  // Each plugin has its own copy of this counter, whose address is unique in the process.
+  // Each plugin has a separate copy of this counter. The address of the copy is unique in the process.
   const auto whose = reinterpret_cast<std::uintptr_t>(&count);
   mark_ = "PALPATE_PROGRAM=" + std::to_string(::getpid()) + "." + std::to_string(whose) + "." + std::to_string(++count);
   // Orphaned descendants of the program become children of this process from now on.
@@ -108,7 +109,7 @@ Child::~Child() {
     ::kill(-pid_, SIGTERM);
     wait_for_end();
   }
-  // The group is killed before the program is reaped, as long as its process id cannot be reused.
+  // The group is killed before the program is reaped, because its process id cannot be reused until then.
   kill_descendants();
   stderr_.trim();
 }
@@ -124,7 +125,7 @@ Child::ReadResult Child::send(const std::string& text, const WaitLimit& limit) {
     if (errno != EAGAIN && errno != EINTR) return ReadResult::ended;
     if (limit.stopped()) return ReadResult::interrupted;
     if (Clock::now() >= limit.until) return ReadResult::late;
-    // The program may write while it reads, so its output is read here to keep its pipe from filling up.
+    // The program may write while it reads. Its output is therefore read here, so that its pipe does not fill up.
     pollfd ends[]{{input_.number(), POLLOUT, 0}, {output_.number(), POLLIN, 0}};
     ::poll(ends, buffer_.size() < kMostBuffered ? 2 : 1, static_cast<int>(kPollInterval.count()));
     if ((ends[1].revents & POLLIN) != 0) read_some();
@@ -141,11 +142,11 @@ ssize_t Child::read_some() {
 
 std::optional<Child::ReadResult> Child::read_more(const WaitLimit& limit) {
   if (limit.stopped()) return ReadResult::interrupted;
-  // Checked before the pipe is read. After an end of the program all its output is then already in the pipe.
+  // This is checked before the pipe is read. If the program has ended, all its output is then already in the pipe.
   const bool over = gone();
   if (wait_for_event(output_, POLLIN, over ? Clock::now() : limit.until)) {
     if (read_some() == 0) return ReadResult::ended;
-  } else if (over) {  // a descendant keeps the pipe open
+  } else if (over) {  // A descendant keeps the pipe open.
     return ReadResult::ended;
   } else if (Clock::now() >= limit.until) {
     return ReadResult::late;
@@ -195,8 +196,8 @@ std::string Child::describe_end() {
   return words.empty() ? how : how + ", its last output: " + shown(words);
 }
 
-/// Returns whether the program has ended; it is not reaped yet. An error means that another part of the process reaped
-/// it, because SIGCHLD is ignored.
+/// Returns whether the program has ended. Does not reap the program. An error of waitid() means that another part of
+/// this process has reaped it, because SIGCHLD is ignored.
 bool Child::gone() const {
   siginfo_t info{};
   return ::waitid(P_PID, static_cast<id_t>(pid_), &info, WEXITED | WNOWAIT | WNOHANG) != 0 || info.si_pid != 0;
@@ -212,8 +213,8 @@ bool Child::wait_for_end() {
   return true;
 }
 
-/// Adds the present descendants of the program to descendants_. Called before the program is asked to end, so that
-/// descendants without the mark are known when their parents end.
+/// Adds the present descendants of the program to descendants_. It is called before the program is asked to end. Later,
+/// descendants without the mark could no longer be recognised, because their parents have ended.
 void Child::find_descendants() {
   const auto all = processes();
   descendants_.insert(pid_);
@@ -227,12 +228,13 @@ void Child::find_descendants() {
   }
 }
 
-/// Kills the program, its group and all descendants with SIGKILL, and reaps those that are children of this process.
-/// The program must not have been reaped.
+/// Kills the program, its group and all descendants with SIGKILL. Reaps those that are children of this process. The
+/// program must not have been reaped.
 void Child::kill_descendants() {
-  // The loop repeats until no descendant is left. A killed process may just have started another one, and orphans
-  // become children of this process. A recorded process id counts only with such a parent, because ids are reused. A
-  // process in a blocked driver may never end, so the number of passes is limited.
+  // The loop repeats until no descendant is left. A killed process may have started another process just before, and
+  // orphans become children of this process. A recorded process id counts only if its parent is this process or a
+  // descendant, because ids are reused. A process in a blocked driver may never end, so the number of passes is
+  // limited.
   constexpr int kLooks = 2000;
   for (int i = 0; i < kLooks; ++i) {
     find_descendants();

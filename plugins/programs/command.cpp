@@ -23,7 +23,7 @@ namespace palpate::programs {
 
 std::optional<std::vector<std::string>> split_command(const std::string& text) {
   std::vector<std::string> words;
-  bool inside = false;  // inside a word, which may be empty: ''
+  bool inside = false;  // whether the position is in a word, which may be empty: ''
   char quote = '\0';
   for (const char c : text) {
     const bool blank = c == ' ' || c == '\t' || c == '\n' || c == '\r';
@@ -74,7 +74,7 @@ bool executable(const std::string& file) {
   return fs::is_regular_file(file, none) && ::access(file.c_str(), X_OK) == 0;
 }
 
-/// Returns whether a program of this name, in any version, is an interpreter of another file.
+/// Returns whether a program with this name is an interpreter of another file. Any version of the interpreter counts.
 bool is_interpreter(const std::string& program) {
   std::string name = fs::path(program).filename().string();
   name.erase(name.find_last_not_of("0123456789.") + 1);

@@ -45,7 +45,7 @@ void keep_copy(const std::string& file, const std::string& text) {
   if (!write_all(open_recorded(file, O_WRONLY | O_TRUNC), text)) fail(file, "cannot be written");
 }
 
-// An empty name stands for an empty file, without anything to cut.
+// With an empty name, the object behaves like an empty file, which has nothing to remove.
 StderrLog::StderrLog(const std::string& file)
     : file_(open_recorded(file.empty() ? "/dev/null" : file, O_RDWR | O_APPEND)) {
   begin_ = size();
@@ -60,10 +60,10 @@ void StderrLog::trim() {
   if (end <= noted + 2 * kLast) return;
   const std::string last = read(end - kLast, end);
   left_out_ += end - kLast - noted;
-  // Output during this call is lost or appears before the note.
+  // Output that arrives during this call is lost, or appears before the note.
   left_out_ += std::max<off_t>(0, size() - end);
   if (::ftruncate(file_.number(), kFirst) != 0) return;
-  write_all(file_, note_of(left_out_) + last);  // on a full disk only output of the program is lost
+  write_all(file_, note_of(left_out_) + last);  // If the disk is full, only output of the program is lost.
   begin_ = std::min(begin_, kFirst);
 }
 
@@ -86,7 +86,7 @@ std::string StderrLog::read(off_t begin, off_t end) const {
 
 Descriptor lock_file(const std::string& file, const WaitLimit& limit) {
   Descriptor lock = open_recorded(file, O_RDWR);
-  // The lock is polled, because a blocking wait cannot be interrupted.
+  // The lock is requested repeatedly, because a blocking wait could not be interrupted.
   while (::flock(lock.number(), LOCK_EX | LOCK_NB) != 0) {
     if (errno != EWOULDBLOCK && errno != EINTR) fail(file, "cannot be locked");
     if (limit.stopped() || std::chrono::steady_clock::now() >= limit.until) return {};
@@ -96,7 +96,7 @@ Descriptor lock_file(const std::string& file, const WaitLimit& limit) {
 }
 
 void write_holder(const Descriptor& lock, pid_t holder) {
-  // A failure only makes the process id in a later message unknown.
+  // If this fails, a later message lacks the process id, and nothing else is affected.
   if (::ftruncate(lock.number(), 0) == 0) write_all(lock, std::to_string(holder) + '\n');
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// One rigid object of several shapes, for example a mug of ring, bottom and handle.
+// One rigid object that consists of several shapes, for example a mug of ring, bottom and handle.
 #include "solid.hpp"
 
 #include <palpate/math.hpp>
@@ -97,7 +97,7 @@ class Compound final : public Shape {
     Vector3d at;
     double cosine, sine;
 
-    /// Returns a vector of the object in the frame of the part.
+    /// Converts a vector from the frame of the object to the frame of the part.
     Vector3d turned(const Vector3d& v) const {
       return {cosine * v.x() + sine * v.y(), cosine * v.y() - sine * v.x(), v.z()};
     }

@@ -28,7 +28,7 @@ bool intersect(const Point& a, const Point& b, const Point& c, const Point& d) {
          (a_side == 0 && within_box(c, d, a)) || (b_side == 0 && within_box(c, d, b));
 }
 
-/// Returns whether edge `i` folds back onto itself at its end.
+/// Returns whether edge `i` turns back at its end and overlaps the next edge.
 bool folds(const Outline& outline, std::size_t i) {
   const Point& a = outline[i];
   const Point& b = next(outline, i);
@@ -36,11 +36,11 @@ bool folds(const Outline& outline, std::size_t i) {
   return cross(a, b, c) == 0 && (b[0] - a[0]) * (c[0] - b[0]) + (b[1] - a[1]) * (c[1] - b[1]) < 0;
 }
 
-/// Returns the number of a corner or an edge in messages, counted from 1.
+/// Returns the number of a corner or an edge for messages, which count from 1.
 std::string number(std::size_t i) { return std::to_string(i + 1); }
 
-/// Returns an error text if `outline` is not the outline of a solid: too few points, crossing edges, or no area; else
-/// an empty string.
+/// Returns an error text if `outline` cannot be the outline of a solid, else "". The possible errors are too few
+/// points, crossing edges, and no area.
 std::string outline_error(const Outline& outline) {
   constexpr std::size_t kMostPoints = 2000;
   const std::size_t n = outline.size();
@@ -55,7 +55,7 @@ std::string outline_error(const Outline& outline) {
   }
   for (std::size_t i = 0; i < n; ++i) {
     for (std::size_t j = i + 2; j < n; ++j) {
-      if (i == 0 && j + 1 == n) continue;  // neighbours
+      if (i == 0 && j + 1 == n) continue;  // the first and the last edge are neighbours
       if (intersect(outline[i], next(outline, i), outline[j], next(outline, j))) {
         return "edge " + number(i) + " meets edge " + number(j);
       }
@@ -64,7 +64,7 @@ std::string outline_error(const Outline& outline) {
   return {};
 }
 
-/// Returns an error text if `hole` is not inside `outline`, both valid outlines; else an empty string.
+/// Returns an error text if `hole` is not inside `outline`, else "". Both must be valid outlines.
 std::string hole_error(const Outline& outline, const Outline& hole) {
   for (std::size_t i = 0; i < hole.size(); ++i) {
     for (std::size_t j = 0; j < outline.size(); ++j) {

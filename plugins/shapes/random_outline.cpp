@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Object with a random smooth outline, lobed and bent, and a random smooth top. It tests strategies on objects for
-// which they were not developed.
+// An object with a random smooth outline, which has lobes and is bent, and with a random smooth top. It is used to test
+// strategies on objects for which they were not developed.
 #include "prism/prism.hpp"
 
 #include <palpate/math.hpp>
@@ -34,15 +34,15 @@ struct RandomOutlineOptions : Options {
 };
 
 constexpr double kTurn = 2.0 * 3.14159265358979323846;
-constexpr double kLowestTop = 0.015;   ///< metres, clearly above the height that counts as desk
-constexpr double kCore = 0.01;         ///< metres, radius of a disk within every outline
-constexpr double kClear = 1e-9;        ///< metres after an entry within which a line is not tested for its exit
-constexpr std::size_t kCorners = 240;  ///< edges are 2 mm long at a length of 14 cm
+constexpr double kLowestTop = 0.015;   ///< metres; clearly above the height up to which contacts count as desk
+constexpr double kCore = 0.01;         ///< metres; radius of a disk that every outline contains
+constexpr double kClear = 1e-9;        ///< metres; the exit of a line is searched at least this far after its entry
+constexpr std::size_t kCorners = 240;  ///< number of corners; for an outline of 14 cm length, edges are 2 mm long
 
 /// Returns a uniform random number between two limits.
 double between(double low, double high, Random& random) { return low + (high - low) * random.uniform(); }
 
-/// Returns left, right, lower and upper end of the rectangle around an outline.
+/// Returns the left, right, lower and upper end of the bounding rectangle of an outline.
 std::array<double, 4> bounds(const Outline& outline) {
   std::array<double, 4> out{kInfinity, -kInfinity, kInfinity, -kInfinity};
   for (const Point& p : outline) {
@@ -51,8 +51,8 @@ std::array<double, 4> bounds(const Outline& outline) {
   return out;
 }
 
-/// Returns a star-shaped outline around the origin, stretched along x. The logarithm of its radius as a function of the
-/// angle is a short Fourier series with decreasing amplitudes.
+/// Returns a star-shaped outline around the origin, stretched along x. The logarithm of its radius is a function of the
+/// angle: a short Fourier series with decreasing amplitudes.
 Outline star(double roughness, Random& random) {
   constexpr int kLobes = 5;
   std::array<double, kLobes + 1> amplitude{}, phase{};
@@ -72,8 +72,8 @@ Outline star(double roughness, Random& random) {
   return out;
 }
 
-/// Bends the x axis to an arc of a circle. Edges of a star do not cross afterwards, because the map is injective: no
-/// point is as far from the axis as the circle's centre, and the arc is less than a full circle.
+/// Bends the x axis to an arc of a circle. Afterwards no edges cross, because the map is injective on a star. No point
+/// of the star is as far from the axis as the centre of the circle, and the arc is less than a full circle.
 void bend(Outline& outline, Random& random) {
   const auto [left, right, low, high] = bounds(outline);
   const double most = std::min(0.75 / std::max(-low, high), 0.3 * kTurn / std::max(-left, right));
@@ -85,7 +85,8 @@ void bend(Outline& outline, Random& random) {
   }
 }
 
-/// Scales an outline so that the longer side of its rectangle has this length, and turns it along x.
+/// Scales an outline so that the longer side of its bounding rectangle has this length. Rotates it so that this side is
+/// along x.
 void scale(Outline& outline, double length) {
   const auto [left, right, low, high] = bounds(outline);
   const bool across = high - low > right - left;
@@ -93,8 +94,8 @@ void scale(Outline& outline, double length) {
   for (Point& p : outline) p = across ? Point{factor * p[1], -factor * p[0]} : Point{factor * p[0], factor * p[1]};
 }
 
-/// Draws an outline around the origin. One without a core is drawn again with less roughness; a bent ellipse always has
-/// a core.
+/// Draws an outline around the origin. An outline without a core (a disk of radius kCore) is drawn again with less
+/// roughness. A bent ellipse always has a core, so the drawing ends.
 Outline random_outline(const RandomOutlineOptions& o, Random& random) {
   for (double roughness = o.roughness;; roughness *= 0.9) {
     Outline out = star(roughness, random);
@@ -149,7 +150,7 @@ class RandomOutline final : public Shape {
       while (from < end) {
         const double in = change(line, from, end, 1.0);
         if (!(in < end)) break;
-        // The search for the exit starts a little later, because it would find the entry again.
+        // The search for the exit starts a little after the entry, because it would otherwise find the entry again.
         const double out = std::min(end, change(line, in + kClear, end, -1.0));
         if (out > in) all.push_back({in, out});
         from = out + kClear;
@@ -158,7 +159,7 @@ class RandomOutline final : public Shape {
     return joined(std::move(all));
   }
 
-  /// The top is straight perpendicular to the wave, so the support point is on the outline.
+  /// Perpendicular to the direction of the wave, the top is straight. The support point is therefore on the outline.
   double support(const Vector3d& direction) const override {
     const double up = std::max(0.0, direction.z());
     const Point rise{direction.x() + up * slope_[0], direction.y() + up * slope_[1]};
@@ -171,7 +172,7 @@ class RandomOutline final : public Shape {
       const Point& b = next(outline_, i);
       const double before = phase(a[0], a[1]);
       most = std::max(most, reach(a[0], a[1], before));
-      // Between two corners, a maximum is where the derivative vanishes on the crest's side.
+      // Between two corners, a maximum is where the derivative vanishes near a crest of the wave.
       const double turn = phase(b[0], b[1]) - before;
       const double sine = (rise[0] * (b[0] - a[0]) + rise[1] * (b[1] - a[1])) / (up * swell_ * turn);
       if (!(std::abs(sine) <= 1.0)) continue;
@@ -189,7 +190,7 @@ class RandomOutline final : public Shape {
       : outline_(random_outline(o, random)), middle_(o.height), relief_(o.height - kLowestTop) {
     double farthest = 0.0;
     for (const Point& p : outline_) farthest = std::max(farthest, math::hypot(p[0], p[1]));
-    // Slope and wave together are at most the relief, so the top stays above kLowestTop.
+    // The sum of slope and wave is at most the relief, so the top stays above kLowestTop.
     const double steepness = between(0.1, 0.6, random) * relief_ / farthest;
     swell_ = between(0.1, 0.4, random) * relief_;
     const double uphill = kTurn * random.uniform();
@@ -200,11 +201,11 @@ class RandomOutline final : public Shape {
     phase_ = kTurn * random.uniform();
   }
 
-  /// Returns the phase of the top's wave, radians.
+  /// Returns the phase of the wave on the top, radians.
   double phase(double s, double t) const { return wave_[0] * s + wave_[1] * t + phase_; }
 
-  /// Returns the parts of the line that are above the outline, as seen from above: between crossings 1 and 2, 3 and 4,
-  /// and so on.
+  /// Returns the parts of the line that are within the outline as seen from above. They are between crossings 1 and 2,
+  /// 3 and 4, and so on.
   std::vector<Stretch> seen_from_above(const Line& line) const {
     std::array<double, kCorners> crossings{};
     std::size_t count = 0;
@@ -216,9 +217,11 @@ class RandomOutline final : public Shape {
     return out;
   }
 
-  /// Returns the first point in [from, to] where the line is not above the top (`sign` 1) or not below it (-1), or
-  /// infinity. The line must be within the outline there. Each step goes to the root of a parabola with the largest
-  /// curvature of the top. So no step passes the crossing, and near it the steps converge as Newton's.
+  /// Returns the first position in [from, to] at which the line crosses the top. With `sign` 1 this is the first point
+  /// that is not above the top, with `sign` -1 the first point that is not below it. Returns infinity if there is none.
+  /// Between `from` and `to`, the line must be within the outline as seen from above. Each step goes to the root of a
+  /// parabola that has the largest curvature of the top. No step can therefore pass the crossing. Near the crossing,
+  /// the steps converge like those of Newton's method.
   double change(const Line& line, double from, double to, double sign) const {
     const Vector3d& u = line.direction;
     const double rate = wave_[0] * u.x() + wave_[1] * u.y();
@@ -239,7 +242,7 @@ class RandomOutline final : public Shape {
   }
 
   Outline outline_;
-  double middle_, relief_;  ///< the top is within middle +- relief
+  double middle_, relief_;  ///< the top is between middle - relief and middle + relief
   double swell_ = 0.0, phase_ = 0.0;
   Point slope_{}, wave_{};
 };

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Cylinder minus cylinder: not convex, but computed from the same intervals.
+// Cylinder with a cylindrical hole. It is not convex, but the intersections are computed from the intervals of both
+// cylinders.
 #include "solid.hpp"
 
 namespace palpate::shapes {
@@ -29,7 +30,7 @@ class Ring final : public Round {
     Interval solid = inside(line);
     Interval hole;
     inner_.clip(line, hole);
-    // A line through the hole continues to the wall behind it, or to the desk.
+    // A line that enters the hole continues to the opposite wall, or to the desk.
     if (!solid.empty() && solid.begin > hole.begin) solid.begin = std::max(solid.begin, hole.end);
     return solid.first();
   }

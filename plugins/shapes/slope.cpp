@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Block whose top rises along its length: the paper's object II.
+// Block whose top rises along its length. It is the paper's object II.
 #include "solid.hpp"
 
 namespace palpate::shapes {
@@ -46,7 +46,7 @@ class Slope final : public Shape {
     inside.clip(-u.z(), o.z());
     inside.clip(o.x(), u.x(), -half_length_, half_length_);
     inside.clip(o.y(), u.y(), -half_width_, half_width_);
-    // z <= middle + rise * s
+    // the inside satisfies z <= middle + rise * s
     const double rise = (high_ - low_) / length_;
     inside.clip(u.z() - rise * u.x(), (low_ + high_) / 2 + rise * o.x() - o.z());
     return inside.first();

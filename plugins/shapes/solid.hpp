@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Common part of shapes: options, and intersection of a line with a convex set. A solid bounded by half-spaces and a
-// quadric intersects a line in the intersection of their intervals, exact up to rounding.
+// Common part of shapes: options, and the intersection of a line with a convex set. A solid may be bounded by
+// half-spaces and a quadric. A line is inside it where it is inside all of them, so the result is the intersection of
+// their intervals, exact up to rounding.
 #pragma once
 
 #include <palpate/math.hpp>
@@ -15,20 +16,20 @@ namespace palpate::shapes {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// Interval of a line within a convex set; empty if begin > end.
+/// Interval of a line within a convex set. It is empty if begin > end.
 struct Interval {
   double begin = -kInfinity;
   double end = kInfinity;
 
   bool empty() const { return begin > end; }
-  /// Returns the begin, or infinity if the interval is empty.
+  /// Returns the begin of the interval. Returns infinity if the interval is empty.
   double first() const {
     if (empty()) return kInfinity;
     return begin;
   }
   void clear() { begin = kInfinity, end = -kInfinity; }
 
-  /// Keeps the x with slope * x <= room.
+  /// Keeps the part of the interval with slope * x <= room.
   void clip(double slope, double room) {
     if (slope > 0.0) {
       end = std::min(end, room / slope);
@@ -39,14 +40,14 @@ struct Interval {
     }
   }
 
-  /// Keeps the part between two parallel planes: low <= origin + slope * x <= high.
+  /// Keeps the part of the interval between two parallel planes: low <= origin + slope * x <= high.
   void clip(double origin, double slope, double low, double high) {
     clip(slope, high - origin);
     clip(-slope, origin - low);
   }
 };
 
-/// Lists the option `height` of shapes with one height.
+/// Lists the option `height` for shapes that have a single height.
 inline void list_height(double& height, Fields& fields) {
   fields.real(height, Field("height", "height of the top above the desk, without tilt").in(Unit::metre).above(0));
 }
@@ -76,24 +77,26 @@ struct ExtentOptions : Options {
 
 using Eigen::Vector3d;
 
-/// Points with (sum of weights * (p - centre)^2) <= level: a sphere, a cylinder, an ellipsoid, or a double cone if the
-/// weight along z is negative.
+/// All points p with (sum of weights * (p - centre)^2) <= level. This is a sphere, a cylinder or an ellipsoid. With a
+/// negative weight along z, it is a double cone.
 struct Quadric {
   Vector3d weights;
   Vector3d centre;
   double level;
 
-  /// Clips an interval to the inside of the quadric; for a double cone, to the inside of its lower half.
+  /// Clips an interval to the inside of the quadric. If the quadric is a double cone, clips it to the inside of the
+  /// lower half.
   void clip(const Line& line, Interval& interval) const {
     const Vector3d& u = line.direction;
-    // Computed relative to the line's point nearest to the centre, which avoids cancellation for distant lines.
+    // The computation is relative to the point of the line nearest to the centre, which avoids cancellation for distant
+    // lines.
     const double shift = (centre - line.origin).dot(u);
     const Vector3d from = line.origin + shift * u - centre;
     const Vector3d weighted = weights.cwiseProduct(u);
     const double a = weighted.dot(u);
     const double b = weighted.dot(from);
     const double c = weights.cwiseProduct(from).dot(from) - level;
-    // a x^2 + 2 b x + c <= 0
+    // the inside satisfies a x^2 + 2 b x + c <= 0
     const double discriminant = b * b - a * c;
     if (discriminant < 0.0 && a >= 0.0) return interval.clear();
     const double q = -(b + std::copysign(std::sqrt(std::max(0.0, discriminant)), b));
@@ -101,7 +104,7 @@ struct Quadric {
     const double one = c / q;
     const double other = a == 0.0 ? std::copysign(kInfinity, q) : q / a;
     if (a < 0.0) {
-      // A steep line is inside both halves of a double cone, above the upper root and below the lower one.
+      // A steep line is inside both halves of a double cone: above the upper root and below the lower root.
       if (u.z() < 0.0) {
         interval.begin = std::max(interval.begin, std::max(one, other) + shift);
       } else {
@@ -114,8 +117,9 @@ struct Quadric {
   }
 
  private:
-  /// Clips if b and the discriminant are 0. The line is entirely inside or outside, touches the quadric, or is steep
-  /// through the apex of a double cone and inside below it.
+  /// Clips an interval if both b and the discriminant are 0. There are three cases. The line is entirely inside or
+  /// outside, it touches the quadric, or it is steep and passes through the apex of a double cone, below which it is
+  /// inside.
   static void clip_double_root(double a, double c, bool down, double shift, Interval& interval) {
     if (a == 0.0 && c > 0.0) interval.clear();
     if (a == 0.0) return;
@@ -124,12 +128,12 @@ struct Quadric {
   }
 };
 
-/// Returns the largest scalar product of a direction and a point of the disk in the plane 0 around the axis.
+/// Returns the largest scalar product of `direction` with a point of the disk in the plane 0 around the axis.
 inline double disk_support(const Vector3d& direction, double radius) {
   return radius * math::hypot(direction.x(), direction.y());
 }
 
-/// Quadric between the plane 0 and a height.
+/// A quadric that is clipped by the plane 0 and by the plane at a height.
 class Round : public Shape {
  public:
   Round(const Quadric& quadric, double height) : quadric_(quadric), height_(height) {}

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Block whose top is a wave along its length: the paper's object I. Intersections are in closed form for vertical
-// lines. For other lines they are found between critical points, by bisection and Newton's method.
+// Block whose top is a wave along its length. It is the paper's object I. For vertical lines, intersections have a
+// closed form. For other lines, bisection and Newton's method find them between the critical points.
 #include <palpate/math.hpp>
 
 #include "solid.hpp"
@@ -75,7 +75,7 @@ class Wave final : public Shape {
   }
 
  private:
-  /// Returns the interval of the line within the box around the block.
+  /// Returns the interval of the line within the bounding box of the block.
   Interval box_interval(const Line& line) const {
     Interval out;
     out.clip(line.origin.x(), line.direction.x(), -half_length_, half_length_);
@@ -86,13 +86,13 @@ class Wave final : public Shape {
 
   double height_at(double s) const { return o_.height + o_.amplitude * math::cos(2.0 * kPi * s / o_.period); }
 
-  /// Returns the height above the top of the line's point at x.
+  /// Returns the height of the line's point at x above the top.
   double clearance(const Line& line, double x) const {
     return line.origin.z() + x * line.direction.z() - height_at(line.origin.x() + x * line.direction.x());
   }
 
   /// Returns the first x after `from` where the slope of the clearance may change its sign. The slope along the line is
-  /// u_z + A k u_s sin(k s), so sin(k s) = -u_z / (A k u_s) there: two positions per period.
+  /// u_z + A k u_s sin(k s). It is 0 where sin(k s) = -u_z / (A k u_s), at two positions per period.
   double next_turn(const Line& line, double from) const {
     const double along = line.direction.x();
     const double steepest = o_.amplitude * k_ * along;
@@ -106,7 +106,8 @@ class Wave final : public Shape {
     return from + (std::min(after(turn), after(kPi - turn)) - phase) / rate;
   }
 
-  /// Returns the zero of the clearance between two turns, where it is monotonic, by bisection and Newton's method.
+  /// Returns the zero of the clearance between two such positions, found by bisection and Newton's method. There the
+  /// clearance is monotonic.
   double crossing(const Line& line, double above, double below) const {
     double x = 0.5 * (above + below);
     for (int i = 0; i < 100 && std::abs(below - above) > 1e-16; ++i) {
@@ -121,12 +122,13 @@ class Wave final : public Shape {
     return x;
   }
 
-  /// Returns the largest along * s + up * z over the outline in the plane of length and height.
+  /// Returns the largest value of along * s + up * z over the block's section in the plane of length and height.
   double profile_support(double along, double up) const {
     const double bottom = std::abs(along) * half_length_;
     if (up <= 0.0) return bottom;
     double best = bottom + up * height_at(half_length_);
-    // On the top, the maximum is at an end, or where along = up A k sin(k s) on the farthest crest in that direction.
+    // On the top, the maximum is at an end of the wave, or on the farthest crest in this direction, where along = up A
+    // k sin(k s).
     if (std::abs(along) > up * o_.amplitude * k_) return best;
     const double phase = o_.amplitude > 0.0 ? math::asin(along / (up * o_.amplitude * k_)) : 0.0;
     double s = std::abs(phase) / k_;
@@ -138,7 +140,7 @@ class Wave final : public Shape {
   Options o_;
   double half_length_ = o_.length / 2;
   double half_width_ = o_.width / 2;
-  double k_ = 2.0 * kPi / o_.period;  ///< angle per metre along the wave
+  double k_ = 2.0 * kPi / o_.period;  ///< wave number: phase in radians per metre
 };
 
 PALPATE_PLUGIN(Shape, Wave, "wave", "block with a wavy top (object I of the paper)")

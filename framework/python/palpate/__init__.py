@@ -33,9 +33,9 @@ __all__ = ["Belief", "Error", "Experiment", "InputError", "Maps", "Run", "Sweep"
 __version__ = _palpate.version
 
 for _one in (Belief, Experiment, Maps, Run, Sweep):
-    _one.__module__ = __name__  # the public name, for help() and pickle
+    _one.__module__ = __name__  # help() and pickle show the public name
 
-_atexit.register(_palpate.end_calls)  # waits for calls in other threads
+_atexit.register(_palpate.end_calls)  # at exit, Python waits for calls in other threads
 
 Tap.__doc__ = """A tap to make.
 
@@ -106,7 +106,7 @@ def begin_sweep(config, *axes, labels=None, runs="runs", **settings) -> Sweep:
         names = [labels] if isinstance(labels, str) else list(labels)
         if not names or not all(isinstance(one, str) and one for one in names):
             raise _error("labels", "has a value that is not a name", "give non-empty texts")
-        # A YAML list of texts in single quotes, in which no other character is special.
+        # A YAML list of texts in single quotes, because no other character is special in such texts.
         texts = ("'" + one.replace("'", "''") + "'" for one in names)
         words += [f"backend.label=[{', '.join(texts)}]"]
     return Sweep(_palpate.begin_sweep(_os.fspath(config), words, _os.fspath(runs)))

@@ -104,7 +104,7 @@ class Experiment:
         try:
             rows = [("experiment", self.directory), ("taps", len(self)), ("finished", self.finished)]
             return _show.table(rows) + _show.image(self.belief.height_mean, "mean of the height")
-        except Error as trouble:  # the experiment is closed
+        except Error as trouble:  # The experiment is closed.
             return _show.table([("experiment", self.directory), (trouble.place, trouble.reason)])
 
     def __enter__(self):

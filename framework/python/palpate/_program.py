@@ -28,7 +28,7 @@ def value_text(value):
     """Returns a value as the program reads it after KEY=. A text is quoted only if the program would read several values."""
     if not isinstance(value, str):
         return json.dumps(value, default=plain, ensure_ascii=False)
-    several = re.sub(r"\([^()]*\)", "", value)  # range(0,10) is one value
+    several = re.sub(r"\([^()]*\)", "", value)  # the commas in range(0,10) do not separate values
     if value[:1] in ("[", "{", '"', "'") or not re.search(r",|: | #", several):
         return value
     return json.dumps(value, ensure_ascii=False)
@@ -36,7 +36,7 @@ def value_text(value):
 
 def values_text(value):
     """Returns the values of a swept key, separated by commas. A value that is not a list stands alone."""
-    if isinstance(value, range) and len(value) > 10**6:  # the program rejects such a range with its own message
+    if isinstance(value, range) and len(value) > 10**6:  # the program rejects a range this long with its own message
         return f"range({value.start},{value.stop},{value.step})"
     if isinstance(value, np.ndarray):
         value = value.tolist()
@@ -49,7 +49,7 @@ def override_texts(overrides, settings):
 
 def conduct(command, progress):
     """Runs a sweep and returns its exit status and its last line. The sweep ends with this process. Calls progress(done, jobs)."""
-    # A separate session, because otherwise Ctrl-C in a terminal would reach the child twice.
+    # The child has a separate session. Otherwise, Ctrl-C in a terminal would reach the child twice.
     child = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE,
                              start_new_session=True, env={**os.environ, "PALPATE_PARENT": str(os.getpid())})
     said, told, interrupted = b"", None, None

@@ -77,12 +77,12 @@ class Run:
         self._opened = _palpate.Record(self.directory)
         self.id = self._record.id()
 
-    def __reduce__(self):  # opens the record again in another process
+    def __reduce__(self):  # unpickling in another process opens the record again
         return Run, (os.path.abspath(self.directory),)
 
     @property
     def _record(self):
-        if not self._opened.is_here():  # in the child of a fork
+        if not self._opened.is_here():  # this is the child of a fork
             self._opened = _palpate.Record(self.directory)
         return self._opened
 
@@ -96,7 +96,7 @@ class Run:
             end = self.summary or {"status": "unfinished"}
             rows += [(name, end[name]) for name in shown if end.get(name) is not None]
             return _show.table(rows) + _show.image(self.surface, "surface")
-        except Error as trouble:  # a run from any side has no maps, and a damaged record may lack everything
+        except Error as trouble:  # A run from any side has no maps, and a damaged record may lack everything.
             return _show.table([*rows, (trouble.place, trouble.reason)])
 
     def plot(self):
@@ -189,7 +189,7 @@ class Sweep:
             if len(jobs) > 20:
                 out += _show.table([(f"and {len(jobs) - 20} more",)])
             return out + (_show.image(self[ended[0]].surface, f"surface of job {ended[0]}") if ended else "")
-        except Error as trouble:  # a run from any side has no maps
+        except Error as trouble:  # A run from any side has no maps.
             return out + _show.table([(trouble.place, trouble.reason)])
 
     def plot(self, metric=None):
@@ -206,7 +206,7 @@ class Sweep:
         return self._record.size()
 
     def __getitem__(self, job: int) -> Run:
-        index = range(len(self))[job]  # -1 is the last job, as in lists
+        index = range(len(self))[job]  # -1 stands for the last job, as in lists
         return Run(self._record.job(index))
 
     def __iter__(self):

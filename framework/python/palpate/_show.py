@@ -10,7 +10,7 @@ import zlib
 
 import numpy as np
 
-# Colours of Viridis (matplotlib, CC0) at 0, 1/8, ..., 1.
+# Colours of Viridis (matplotlib, CC0) at the positions 0, 1/8, ..., 1.
 _COLOURS = np.array([(68, 1, 84), (71, 44, 122), (59, 81, 139), (44, 113, 142), (33, 144, 141), (39, 173, 129),
                      (92, 200, 99), (170, 220, 50), (253, 231, 37)], dtype=float)
 

@@ -23,13 +23,13 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t kMostScenes = 12;
-constexpr std::size_t kMostCurves = 16;  ///< per panel
+constexpr std::size_t kMostCurves = 16;  ///< largest number of curves per panel
 
 // Lengths in points of print.
-constexpr double kAxisRoom = 40;         ///< left of the first panel: numbers and title of the axis
-constexpr double kPanelGap = 14;         ///< between panels; only the first panel of a row has numbers
-constexpr double kNumbersRoom = 14;      ///< below a panel, for numbers
-constexpr double kLeastPanelWidth = 85;  ///< narrower panels move to another row
+constexpr double kAxisRoom = 40;         ///< width left of the first panel, for numbers and title of the axis
+constexpr double kPanelGap = 14;         ///< width between panels; only the first panel of a row has numbers
+constexpr double kNumbersRoom = 14;      ///< height below a panel, for numbers
+constexpr double kLeastPanelWidth = 85;  ///< least width of a panel; rows have fewer panels if necessary
 
 /// Returns the names of the groups in the order of the sweep; a group has the same style in all panels.
 std::vector<std::string> group_names(const GroupCurves& curves) {
@@ -41,26 +41,27 @@ std::vector<std::string> group_names(const GroupCurves& curves) {
   return out;
 }
 
-/// Returns the interval to draw at a point. Equal values have no interval; the band then shrinks to the mean.
+/// Returns the interval to draw at a point. Equal values have no interval; the band then has the width 0, at the mean.
 std::optional<MeanInterval> drawn_interval(const MeanEstimate& mean) {
   if (mean.interval || mean.count == 0 || mean.clusters < kLeastForInterval) return mean.interval;
   return MeanInterval{mean.mean, mean.mean};
 }
 
-/// Range of an axis. It begins at 0 if 0 is near.
+/// Range of an axis. The range begins at 0 if 0 is near the values.
 struct AxisRange {
   double low = 0.0;
   double high = 0.0;
 
   AxisRange(double least, double most) {
-    constexpr double kNear = 0.25;  // share of the range
+    constexpr double kNear = 0.25;  // 0 is near if its distance is at most this share of the range
     constexpr double kRoom = 0.04;
     const double room = std::max(most - least, std::max(1e-9, 1e-3 * std::abs(most)));
     low = least >= 0.0 && least <= kNear * room ? 0.0 : least - kRoom * room;
     high = most + kRoom * room;
   }
 
-  /// Returns gnuplot's commands for the axis `name` of this length in points; `whole` allows whole numbers only.
+  /// Returns gnuplot's commands for the axis `name` with this length in points. If `whole` is set, all tics are whole
+  /// numbers.
   std::string settings(char name, double length, bool whole) const {
     constexpr double kPerTic = 18;
     double step = tic_step(high - low, std::max(2.0, length / kPerTic));
@@ -69,8 +70,9 @@ struct AxisRange {
   }
 };
 
-/// Returns the range of the values of all curves, the same for all panels. It stays near the means, because intervals
-/// of the first taps may be very wide, and excludes negative values if no mean is negative.
+/// Returns the range of the values of all curves, the same for all panels. The range covers the means and only a part
+/// of wide intervals, because intervals of the first taps may be very wide. It excludes negative values if no mean is
+/// negative.
 AxisRange value_range(const std::vector<const GroupCurve*>& curves, double factor) {
   std::vector<double> means;
   std::vector<double> ends;
@@ -103,14 +105,14 @@ std::string block_of(const GroupCurve& curve, double axis, double factor) {
   return out;
 }
 
-/// Returns the title of a panel, "scene: ring", or without the keys if they do not fit, in lines.
+/// Returns the lines of a panel's title, such as "scene: ring". Leaves out the keys if they do not fit.
 std::vector<std::string> panel_title(const GroupCurves& curves, const std::string& scene, double width) {
   if (scene.empty()) return {};
   const std::string whole = fmt::format("{}: {}", fmt::join(curves.scenes, ", "), scene);
   return lines_within(width_of_line(whole) <= width ? whole : scene, width);
 }
 
-/// Returns comments of the script with the text for a caption.
+/// Returns the text for a caption as comments of the script.
 std::string caption_of(const GroupCurves& curves, const std::string& title) {
   const std::string better = curves.metric.better_words();
   return fmt::format(
@@ -135,16 +137,16 @@ std::string headers_of(const FigureLayout& layout, const fs::path& file) {
   return out;
 }
 
-/// The groups and scenes of a figure, and the positions of its panels.
+/// The drawn groups and scenes of a figure, and the positions of the panels.
 struct PanelGrid {
   std::vector<std::string> names;   ///< drawn groups
   std::vector<std::string> scenes;  ///< drawn scenes, one panel each
   std::string left_out;             ///< text about groups and scenes that are not drawn
   std::vector<LegendEntry> legend;
   std::vector<std::string> y_title;
-  double left = 0.0;       ///< of the first panel
+  double left = 0.0;       ///< left edge of the first panel
   std::size_t across = 1;  ///< number of panels side by side
-  double top = 0.0;        ///< of the first panel with its title
+  double top = 0.0;        ///< upper edge of the first panel with its title
   double head = 0.0;       ///< height of a panel's title
   double panel_width = 0.0;
   double panel_height = 0.0;
@@ -172,8 +174,10 @@ PanelGrid grid_of(const GroupCurves& curves, const std::string& y_title, double 
   if (more_scenes > 0) out.left_out += fmt::format("{}{} more scenes", more_groups > 0 ? " and " : "", more_scenes);
   if (!out.left_out.empty()) out.left_out += " are not drawn: the CSV has them";
 
-  // Fills rows evenly. The title of the axis stands left of all rows, in several lines if the rows are short.
-  const double pairs = width - kAxisRoom - kEndRoom + kPanelGap;  // width of all panels of a row, each with a gap
+  // Distributes the panels evenly over the rows. The title of the axis is left of all rows. It has several lines if the
+  // rows are short.
+  // width of all panels of a row, each with the gap after it
+  const double pairs = width - kAxisRoom - kEndRoom + kPanelGap;
   const std::size_t most = std::max<std::size_t>(1, static_cast<std::size_t>(pairs / (kLeastPanelWidth + kPanelGap)));
   const std::size_t down = (out.scenes.size() + most - 1) / most;
   out.across = (out.scenes.size() + down - 1) / down;
@@ -195,7 +199,7 @@ PanelGrid grid_of(const GroupCurves& curves, const std::string& y_title, double 
   return out;
 }
 
-/// Clauses that draw bands and lines.
+/// Clauses of gnuplot's plot command that draw bands and lines.
 struct CurveClauses {
   std::vector<std::string> bands;
   std::vector<std::string> lines;
@@ -215,7 +219,7 @@ struct CurveClauses {
   }
 };
 
-/// The drawn curves with the units and axes of all panels.
+/// The drawn curves, with the units and axes that all panels share.
 struct DrawnCurves {
   std::vector<const GroupCurve*> curves;
   Scale axis;

@@ -30,7 +30,7 @@ constexpr double kOtherLetters = 0.65;
 
 LineStyle line_style(std::size_t curve) {
   constexpr std::array<const char*, 4> kDashes{"solid", "(7,2.5)", "(2,2)", "(8,2,2,2)"};
-  // disc, triangle, square, diamond, then the open marks
+  // gnuplot's point types: disc, triangle, square, diamond, and the same four without filling
   constexpr std::array<int, 8> kMarks{7, 9, 5, 13, 6, 8, 4, 12};
   const std::string colour = kLineColours[curve % kLineColours.size()];
   // The ninth group has the first colour again, with another dash.

@@ -13,7 +13,7 @@ namespace palpate {
 inline constexpr double kLineHeight = 11;
 inline constexpr double kEndRoom = 9;  ///< free width at the right edge of the figure
 
-/// Style of a group's curve. Dashes and marks distinguish groups in grey.
+/// Style of the curve of a group. Dashes and marks distinguish the groups in grey prints.
 struct LineStyle {
   std::string colour;
   std::string line;   ///< gnuplot's style of the line, with its colour
@@ -23,7 +23,7 @@ struct LineStyle {
 /// Returns the style of the curve with this index.
 LineStyle line_style(std::size_t curve);
 
-/// Returns at least the width of a line in DejaVu Sans.
+/// Returns an upper bound of the width of a line in DejaVu Sans.
 double width_of_line(const std::string& text);
 
 /// Returns the text in lines of at most this width, broken after blanks where possible.
@@ -36,7 +36,7 @@ struct LegendEntry {
   std::vector<std::string> lines;
 };
 
-/// Places names side by side from `left` on, in a figure of this width. A name that is wider than the figure has rows
+/// Places names side by side from `left` on, in a figure with this width. A name that is wider than the figure has rows
 /// of its own.
 std::vector<LegendEntry> place_names(const std::vector<std::string>& names, double left, double width);
 

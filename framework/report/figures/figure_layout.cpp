@@ -18,12 +18,12 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kPi = 3.14159265358979323846;
-constexpr int kMostDrawn = 128;  ///< along a side; a panel has about twice as many pixels
+constexpr int kMostDrawn = 128;  ///< largest number of cells along a side; a panel has about twice as many pixels
 
 constexpr const char* kStar = "#e6007e";
 
-/// Returns gnuplot's command for a star with five rays of this length about (next_x, next_y). It is a polygon, because
-/// letters depend on the font, and it may reach over the edge of a map.
+/// Returns gnuplot's command for a star with five rays of length `ray` about (next_x, next_y). The star is a polygon,
+/// because the look of a letter depends on the font. The star may extend beyond the edge of a map.
 std::string star_at(double ray) {
   std::string out = "set object 1 polygon";
   for (int i = 0; i <= 10; ++i) {
@@ -47,7 +47,7 @@ std::string colour_range(const Colours& colours) {
                                                         colours.logarithmic ? "set logscale cb\n" : "");
 }
 
-/// Returns the number of drawn cells along a side; gnuplot's images need at least two.
+/// Returns the number of drawn cells along a side, at least two, because gnuplot's images need two.
 int drawn(int count) { return std::clamp(count, 2, kMostDrawn); }
 
 /// Concatenates `cell`(candidate, column, row) over the drawn cells, with a line end after each row.
@@ -66,7 +66,7 @@ std::string rows_of(const SceneFrame& frame, const Cell& cell) {
   return out;
 }
 
-// View of surfaces: tilt from the vertical and turn about it.
+// Direction of view of surfaces: tilt from the vertical, and rotation about the vertical.
 constexpr double kTiltDegrees = 60.0;
 constexpr double kTurnDegrees = 32.0;
 constexpr double kTilt = kTiltDegrees * kPi / 180.0;
@@ -100,7 +100,7 @@ Box map_box(const Area& area, double left, double top, double side) {
 }
 
 ZRange z_range_of(const std::vector<MapsAtTap>& snapshots, const SceneFrame& frame) {
-  // Returns the position upwards in the picture from the middle of the desk, in gnuplot's parallel projection.
+  // Returns how far a point is above the middle of the desk in the picture, by gnuplot's parallel projection.
   const auto up = [&](double x, double y, double height) {
     const double back = (y - 0.5 * frame.area.depth) * std::cos(kTurn) - (x - 0.5 * frame.area.width) * std::sin(kTurn);
     return back * std::cos(kTilt) + (height - frame.desk) * std::sin(kTilt);
@@ -125,7 +125,8 @@ MapsAtTap without_hidden_taps(const MapsAtTap& snapshot, const SceneFrame& frame
   const Area& area = frame.area;
   const CandidateGrid& candidates = frame.candidates;
   const double step = 0.5 * std::min(area.width / candidates.columns, area.depth / candidates.rows);
-  // Ignores what is less than the margin higher than a tap, as the tap's mark reaches above the surface.
+  // The surface hides a tap only if it is higher than the tap by more than this margin, because the tap's mark is above
+  // the surface.
   const double height = snapshot.surface.maxCoeff() - snapshot.surface.minCoeff();
   const double margin = 0.06 * height;
   const auto hidden = [&](const TapMark& mark) {
@@ -173,7 +174,7 @@ void FigureLayout::data(const std::string& name, const std::string& lines) {
 }
 
 void FigureLayout::taps(const std::string& name, const MapsAtTap& snapshot) {
-  constexpr const char* kKinds[] = {"on_", "off_", "failed_"};  // by TapMark::Kind
+  constexpr const char* kKinds[] = {"on_", "off_", "failed_"};  // prefixes in the order of TapMark::Kind
   std::string lines[std::size(kKinds)];
   for (const TapMark& mark : snapshot.marks)
     lines[static_cast<std::size_t>(mark.kind)] +=
@@ -244,8 +245,9 @@ void FigureLayout::surface(const Box& box, const SceneFrame& frame, const std::s
                            const Colours& colours, const ZRange& z_range) {
   const Area& area = frame.area;
   const double wide = area.width * std::cos(kTurn) + area.depth * std::sin(kTurn);
-  const double scale = std::min(box.width / wide, box.height / (z_range.above + z_range.below));     // pixels per metre
-  const double middle = box.top + 0.5 * box.height + 0.5 * scale * (z_range.above - z_range.below);  // of the desk
+  const double scale = std::min(box.width / wide, box.height / (z_range.above + z_range.below));  // pixels per metre
+  // height of the desk in the picture
+  const double middle = box.top + 0.5 * box.height + 0.5 * scale * (z_range.above - z_range.below);
   const double lift = scale * (0.5 * (z_range.low + z_range.top) - frame.desk) * std::sin(kTilt);
   // gnuplot fits the longer side of the area to the shorter side of the margins, and centres both.
   const double side = scale * std::max(area.width, area.depth);
@@ -288,7 +290,7 @@ std::string FigureLayout::script() const {
   const bool has_bar = panels_.find("$bar ") != std::string::npos;
   const std::string out = (has_bar ? fmt::format("$bar << END\n{}END\n", bar) : "") + data_ + "set multiplot\n" +
                           panels_ + "unset multiplot\nset output\n";
-  // In the C locale, gnuplot warns about any encoding, so ASCII scripts set none.
+  // In the C locale, gnuplot warns about any encoding. Scripts in ASCII therefore set none.
   const bool is_ascii =
       std::all_of(out.begin(), out.end(), [](char c) { return static_cast<unsigned char>(c) < 0x80; });
   return (is_ascii ? "" : "set encoding utf8\n") + out;
@@ -298,7 +300,7 @@ std::vector<fs::path> write_figures(const fs::path& folder, const std::vector<Fi
   make_inner_folder(folder);
   std::error_code failed;
   for (const auto& [name, layout] : figures) {
-    // Removes an older picture, which would not belong to this script.
+    // Removes an older picture, which would not match this script.
     fs::remove(folder / (name + ".png"), failed);
     write_file(folder / (name + ".gnuplot"),
                picture_header(layout.width(), layout.height(), name + ".png", name + ".png") + layout.script());

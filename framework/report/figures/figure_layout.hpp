@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A picture of several panels as a gnuplot script. Panels have positions in pixels; their data stands in named blocks
-// at the beginning of the script.
+// A picture of several panels as a gnuplot script. Panels have positions in pixels. Their data is in named blocks at
+// the beginning of the script.
 #pragma once
 
 #include "experiment/experiment.hpp"
@@ -13,11 +13,11 @@
 
 namespace palpate {
 
-/// CandidateGrid, area and desk, which are the same for all taps of a run.
+/// Grid of candidates, area and desk, which are the same for all taps of a run.
 struct SceneFrame {
   CandidateGrid candidates;
   Area area;
-  double desk = 0.0;  ///< metres
+  double desk = 0.0;  ///< height of the desk, metres
 };
 
 SceneFrame scene_frame_of(const Experiment& experiment);
@@ -33,17 +33,17 @@ struct Box {
 /// Returns gnuplot's command `set palette`, one line.
 std::string gnuplot_palette(Palette palette);
 
-/// Returns the maps without the marks of taps that the surface hides in the view from the side.
+/// Returns the maps without the marks of those taps that the surface hides in the view from the side.
 MapsAtTap without_hidden_taps(const MapsAtTap& snapshot, const SceneFrame& frame);
 
-/// Returns `values`, one per candidate, as rows of a matrix from the lowest y on. Grids with more cells than a picture
-/// can show are thinned out.
+/// Returns `values`, one per candidate, as rows of a matrix, beginning with the lowest y. A grid with more cells than a
+/// picture can show is thinned out.
 std::string matrix_of(const SceneFrame& frame, const Eigen::VectorXd& values);
 
-/// Returns gnuplot's columns that place such a matrix, in centimetres.
+/// Returns gnuplot's columns that place a matrix of matrix_of(), in centimetres.
 std::string matrix_columns(const SceneFrame& frame);
 
-/// Returns lines "x y height deviation" of the same cells, in centimetres, with a blank line after each row.
+/// Returns lines "x y height deviation" of the cells of matrix_of(), in centimetres, with a blank line after each row.
 std::string surface_of(const SceneFrame& frame, const Eigen::VectorXd& height, const Eigen::VectorXd& deviation);
 
 /// Extent of surfaces in the view from the side, metres.
@@ -54,7 +54,7 @@ struct ZRange {
   double below = 0.0;
 };
 
-/// Returns the common extent of these surfaces of one experiment, so that their panels have the same scale.
+/// Returns the common extent of the surfaces of one experiment, so that all panels have the same scale.
 ZRange z_range_of(const std::vector<MapsAtTap>& snapshots, const SceneFrame& frame);
 
 class FigureLayout {
@@ -63,15 +63,15 @@ class FigureLayout {
 
   int width() const { return width_; }
   int height() const { return height_; }
-  /// Returns the script without terminal and output.
+  /// Returns the script without the settings of terminal and output.
   std::string script() const;
 
   /// Returns gnuplot's `screen` coordinates of a point in pixels from the upper left corner.
   std::string at(double x, double y) const;
-  /// Returns gnuplot's command for a label centred vertically at `y`; `style` is the rest of the command.
+  /// Returns gnuplot's command for a label that is centred vertically at `y`. `style` is the rest of the command.
   std::string label(const std::string& words, double x, double y, const std::string& style) const;
 
-  /// Adds a named block of data; nothing for "".
+  /// Adds a named block of data. Adds nothing if `lines` is empty.
   void data(const std::string& name, const std::string& lines);
   /// Adds the taps as blocks `on_NAME`, `off_NAME` and `failed_NAME` ("x y height number"), and the next tap as
   /// `next_NAME` ("x y"), in centimetres.
@@ -87,15 +87,15 @@ class FigureLayout {
   /// area.
   void map(const Box& box, const SceneFrame& frame, const std::string& map, const std::string& taps,
            const Colours& colours);
-  /// Adds the block `surface` in three dimensions, with the taps `taps` on it, in the middle of the box.
+  /// Adds the block `surface` in three dimensions, with the taps `taps` on it. The surface is in the middle of the box.
   void surface(const Box& box, const SceneFrame& frame, const std::string& surface, const std::string& taps,
                const Colours& colours, const ZRange& z_range);
   /// Adds the scale of the colours.
   void bar(const Box& box, const Colours& colours);
-  /// Adds the legend of the marks, from `x` on, with its middle at `y`.
+  /// Adds the legend of the marks. It begins at `x`, and its middle is at `y`.
   void legend(double x, double y, bool failed, bool next = true);
 
-  /// Adds any plot: lines of settings, then one plot command.
+  /// Adds a plot that consists of lines of settings and one plot command.
   void plot(const Box& box, const std::string& settings, const std::string& clauses);
 
  private:
@@ -111,23 +111,23 @@ class FigureLayout {
   std::string panels_;
 };
 
-/// Returns the least step of 1, 2, 5, 10, ... with which a range of width `spread` has at most `most` + 1 tics.
+/// Returns the least step of 1, 2, 5, 10, ... for which a range of width `spread` has at most `most` + 1 tics.
 double tic_step(double spread, double most);
 
 /// Returns a length in metres as centimetres, for a block of data.
 std::string centimetres(double value);
 
-/// Returns the box of a map with its upper left corner at (left, top). Its longer side is `side`; its aspect ratio is
-/// that of the area.
+/// Returns the box of a map with its upper left corner at (left, top). The longer side of the box is `side`. The box
+/// has the aspect ratio of the area.
 Box map_box(const Area& area, double left, double top, double side);
 
-/// A picture before it is drawn.
+/// A picture that is not drawn yet.
 struct Figure {
   std::string name;
   FigureLayout layout;
 };
 
-/// Writes all scripts to `folder`, then draws them. Throws Error if a picture cannot be drawn.
+/// Writes all scripts to `folder` and then draws their pictures. Throws Error if a picture cannot be drawn.
 std::vector<std::filesystem::path> write_figures(const std::filesystem::path& folder,
                                                  const std::vector<Figure>& figures);
 

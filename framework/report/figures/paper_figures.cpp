@@ -15,7 +15,7 @@
 namespace palpate {
 namespace {
 
-/// The snapshots of one run in a figure of the paper.
+/// States of one run that a figure of the paper shows.
 struct Progress {
   std::string strategy;
   std::vector<int> iterations;
@@ -23,16 +23,17 @@ struct Progress {
   SceneFrame frame;
 };
 
-/// A row of panels, one per snapshot of a run: surfaces seen from the side, or maps of the scores or of u.
+/// A row of panels with one panel per snapshot of a run. The panels show surfaces from the side, or maps of the scores
+/// or of u.
 struct PanelRow {
   const Progress& run;
   Eigen::VectorXd MapsAtTap::*map;
 };
-constexpr double kLeft = 70;    // left of the first panel, for an axis
-constexpr double kRight = 150;  // right of the last panel, for a scale
+constexpr double kLeft = 70;    // pixels left of the first panel, for an axis
+constexpr double kRight = 150;  // pixels right of the last panel, for a scale
 constexpr double kMap = 225;    // longer side of a map, pixels
-constexpr double kStep = 312;   // distance between panels
-constexpr double kHead = 48;    // for the title
+constexpr double kStep = 312;   // distance between the left edges of neighbouring panels
+constexpr double kHead = 48;    // height of the title
 constexpr double kSurface = 200;
 
 /// Returns the least and the greatest value of a map over the snapshots of a run.
@@ -54,18 +55,18 @@ Colours colours_of(const PanelRow& row) {
     return deviation_colours(least, most);
   }
   if (!is_scores(row)) return {Palette::cividis, 0.0, 1.0, "u"};
-  const double high = extent(row).second;  // the scale begins at 0
+  const double high = extent(row).second;  // The scale begins at 0.
   return {Palette::viridis, 0.0, high > 0.0 ? high : 1.0, fmt::format("score ({})", row.run.strategy)};
 }
 
-/// Returns a note on scores below 0; "" if there are none.
+/// Returns a note that scores are below 0; "" if no score is.
 std::string below_zero_words(const std::vector<PanelRow>& rows) {
   double least = 0.0;
   for (const PanelRow& row : rows) least = is_scores(row) ? std::min(least, extent(row).first) : least;
   return least < -0.005 ? fmt::format("scores below 0, to {:.2f}, have the colour of 0", least) : "";
 }
 
-/// Returns the suffix of a panel's blocks. gnuplot allows letters, digits and '_' in names.
+/// Returns the suffix in the names of a panel's blocks.
 std::string block_suffix(const Progress& progress, std::size_t column) {
   std::string out = fmt::format("{}_{}", progress.strategy, progress.iterations[column]);
   const auto is_other = [](unsigned char c) { return std::isalnum(c) == 0; };
@@ -87,7 +88,7 @@ void draw_row(FigureLayout& layout, const PanelRow& row, double top, const Box& 
     if (is_surface(row)) {
       layout.data("surface_" + key, surface_of(run.frame, snapshot.surface, snapshot.deviation));
       MapsAtTap seen = without_hidden_taps(snapshot, run.frame);
-      seen.next.reset();  // the map shows it
+      seen.next.reset();  // The map shows the next tap.
       layout.taps("seen_" + key, seen);
       layout.surface({left - 4, top, map.width + 26, kSurface}, run.frame, "surface_" + key, "seen_" + key, colours,
                      z_range);
@@ -102,8 +103,9 @@ void draw_row(FigureLayout& layout, const PanelRow& row, double top, const Box& 
   layout.bar({left - kStep + map.width + gap, top, 14, height_of(row, map)}, colours);
 }
 
-/// Returns the run after these iterations of the paper. Iteration k is the state after k - 1 taps beyond the initial
-/// ones. The first iteration beyond the run's end shows the last tap; later ones are left out.
+/// Returns the run after these iterations of the paper. Iteration k of the paper is the state after k - 1 taps beyond
+/// the initial ones. If the run is shorter, its last tap stands for the first missing iteration. Later iterations are
+/// left out.
 Progress progress_of(const RunEnvironment& environment, const RecordedRun& recording,
                      const std::vector<int>& iterations) {
   const int all = static_cast<int>(recording.taps.size());
@@ -116,7 +118,7 @@ Progress progress_of(const RunEnvironment& environment, const RecordedRun& recor
   for (const int one : iterations) {
     // Iteration 1 of the paper is the state after the initial taps.
     const int at = std::clamp(one + initial - 1, 1, all);
-    if (!taps.empty() && at == taps.back()) break;  // the last tap is shown once
+    if (!taps.empty() && at == taps.back()) break;  // The last tap is shown once.
     shown.push_back(one);
     taps.push_back(at);
   }
@@ -124,11 +126,11 @@ Progress progress_of(const RunEnvironment& environment, const RecordedRun& recor
           scene_frame_of(playback.experiment())};
 }
 
-/// Draws rows of panels below each other, of one run or of several runs with equally many snapshots. `rows` is not
-/// empty.
+/// Draws rows of panels below each other. The rows belong to one run, or to several runs with equal numbers of
+/// snapshots. `rows` is not empty.
 Figure panels_figure(const std::string& name, const std::string& title, const std::vector<PanelRow>& rows) {
-  constexpr double kWords = 60;  // above the first row of a run
-  constexpr double kBelow = 54;  // below a row
+  constexpr double kWords = 60;  // pixels above the first row of a run
+  constexpr double kBelow = 54;  // pixels below a row
   const std::size_t columns = rows.front().run.snapshots.size();
   const bool several = &rows.front().run != &rows.back().run;
   const Box map = map_box(rows.front().run.frame.area, several ? kLeft + 24 : kLeft, 0, kMap);
@@ -160,7 +162,7 @@ Figure panels_figure(const std::string& name, const std::string& title, const st
   return {name, std::move(layout)};
 }
 
-/// Draws surfaces above, the strategy's scores below: figures 2 and 3.
+/// Draws the surfaces above the strategy's scores, as figures 2 and 3 of the paper do.
 Figure progress_figure(const std::string& name, const std::string& title, const Progress& progress) {
   return panels_figure(name, title, {{progress, &MapsAtTap::surface}, {progress, &MapsAtTap::scores}});
 }
@@ -184,7 +186,7 @@ std::string title_with_seed(const std::string& title, const Sweep& sweep, const 
   return title + (seed.empty() ? "" : ", seed " + seed);
 }
 
-/// The figures of a sweep, and notes on the figures that lack a job.
+/// The figures of a sweep, with notes on figures for which a job is missing.
 struct PaperFigures {
   const RunEnvironment& environment;
   const Sweep& sweep;
@@ -210,14 +212,14 @@ struct PaperFigures {
         progress_figure(name, title_with_seed(title, sweep, *jobs.front()), progress(*jobs.front(), iterations)));
   }
 
-  /// Returns whether two jobs differ in nothing but the strategy.
+  /// Returns whether two jobs differ only in the strategy.
   bool alike(const Job* one, const Job* other) const {
     return std::all_of(sweep.keys.begin(), sweep.keys.end(), [&](const std::string& key) {
       return key == "acquisition" || value_of(sweep, *one, key) == value_of(sweep, *other, key);
     });
   }
 
-  /// Adds figures 4 and 5, which compare two such jobs.
+  /// Adds figures 4 and 5, which compare two jobs that differ only in the strategy.
   void add_comparisons() {
     const auto uncertainty_jobs = finished_jobs(sweep, "object_i_right", "uncertainty");
     const auto weighted_jobs = finished_jobs(sweep, "object_i_right", "weighted");

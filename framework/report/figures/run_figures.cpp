@@ -39,13 +39,13 @@ Figure surface_figure(const ExperimentOptions& options, const SceneFrame& frame,
   return {"surface", std::move(layout)};
 }
 
-/// A map with its colour scale, which begins at 0.
+/// A map with its colour scale. The scale begins at 0.
 struct MapPanel {
   const char* name;
   Eigen::VectorXd values;
   Palette palette;
   double high;
-  std::string outside;  ///< the range of the values, if it exceeds the scale
+  std::string outside;  ///< text with the range of the values, if it exceeds the scale
 };
 
 /// Returns the maps of u and w with e = u w, or of u and p with the score.
@@ -54,7 +54,7 @@ std::vector<MapPanel> map_panels(const MapsAtTap& last) {
     if (values.minCoeff() >= -5e-4 && values.maxCoeff() <= high + 5e-4) return std::string();
     return fmt::format("\nrange: {:.2f} to {:.2f}", values.minCoeff(), values.maxCoeff());
   };
-  // With a w, the figure shows e = u w instead of the score.
+  // If the footprint is the weight w, the figure shows e = u w instead of the score.
   const Eigen::VectorXd e = last.has_weight() ? last.exploration() : last.scores;
   const double most = e.maxCoeff() > 0.0 ? e.maxCoeff() : 1.0;
   std::vector<MapPanel> panels{{"u", last.uncertainty, Palette::cividis, 1.0, ""}};
@@ -75,7 +75,7 @@ Figure maps_figure(const ExperimentOptions& options, const SceneFrame& frame, co
   constexpr double kSide = 290;
   const Box first = map_box(frame.area, kMargin, kTop, kSide);
   const std::vector<MapPanel> panels = map_panels(last);
-  const double steps = static_cast<double>(panels.size() - 1);  // from the first panel to the last
+  const double steps = static_cast<double>(panels.size() - 1);  // number of steps from the first panel to the last
   FigureLayout layout(static_cast<int>(kMargin + steps * kPitch + kSide + 90),
                       static_cast<int>(kTop + first.height + 96));
   const std::map<std::string, std::string> titles = map_titles(options);
@@ -98,21 +98,21 @@ Figure maps_figure(const ExperimentOptions& options, const SceneFrame& frame, co
 
 constexpr double kNameHeight = 17;
 
-/// Returns the number of curve names side by side.
+/// Returns how many names of curves are side by side.
 std::size_t columns_of(const CurvePanel& panel) {
   constexpr std::size_t kLongestOfTwo = 22;
   const auto is_short = [](const Curve& one) { return one.name.size() <= kLongestOfTwo; };
   return std::all_of(panel.curves.begin(), panel.curves.end(), is_short) ? 2 : 1;
 }
 
-/// Returns the number of lines of names above the panel, where they hide no curves.
+/// Returns the number of lines with names above the panel. There they hide no curve.
 std::size_t name_lines(const CurvePanel& panel) {
   if (panel.curves.front().name.empty()) return 0;
   return (panel.curves.size() + columns_of(panel) - 1) / columns_of(panel);
 }
 
 void draw_curves(FigureLayout& layout, const Box& box, double top, const CurvePanel& panel, int number, int taps) {
-  // by CurveAxis
+  // commands in the order of CurveAxis
   constexpr const char* kAxes[] = {"", "set yrange [0:*]\n", "set yrange [0:1]\n",
                                    "set logscale y\nset format y '%g'\n"};
   const std::string settings =
@@ -143,7 +143,7 @@ Figure curves_figure(const RecordedRun& recording, const History& history) {
   const auto [panels, constants] = curves_of(recording, history);
   const int count = static_cast<int>(panels.size());
   const int columns = std::clamp(count, 1, kColumns);
-  std::vector<double> title_tops;  // one per row of panels
+  std::vector<double> title_tops;  // one top edge per row of panels
   std::vector<double> tops;
   double bottom = 70;
   for (int first = 0; first < count; first += kColumns) {

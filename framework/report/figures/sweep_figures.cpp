@@ -20,12 +20,12 @@ namespace palpate {
 namespace {
 
 constexpr std::size_t kMostGroups = 24;
-constexpr std::size_t kMostValues = 24;  ///< per key of a heat map
-constexpr std::size_t kMostDots = 200;   ///< per group
+constexpr std::size_t kMostValues = 24;  ///< largest number of values per key of a heat map
+constexpr std::size_t kMostDots = 200;   ///< largest number of dots per group
 constexpr std::size_t kLongestName = 44;
 constexpr const char* kOption = "--figures";
 
-/// Named jobs, at least one of which ended without a failure.
+/// A named group of jobs, of which at least one ended without a failure.
 struct Group {
   std::string name;
   JobGroup jobs;
@@ -44,7 +44,7 @@ std::vector<Group> groups_of(const Sweep& sweep, const std::vector<Row>& results
   return groups;
 }
 
-/// Returns the settings of an axis for these values, with few enough tics for their numbers.
+/// Returns the settings of an axis for these values. The axis has so few tics that their numbers do not overlap.
 std::string value_axis(const std::vector<double>& values, double factor) {
   const auto [least, most] = std::minmax_element(values.begin(), values.end());
   const double spread = *most > *least ? (*most - *least) / factor : std::max(1e-9, std::abs(*most / factor));
@@ -54,7 +54,7 @@ std::string value_axis(const std::vector<double>& values, double factor) {
   return fmt::format("set xrange [{:.6g}:{:.6g}]\nset xtics {:.6g}\n", low, high, tic_step(spread, 5.0));
 }
 
-/// Draws a panel of horizontal boxes, one line per group, the first at the top.
+/// Draws a panel of horizontal boxes, one per line and group. The first group is at the top.
 void draw_boxes(FigureLayout& layout, const Box& box, const std::string& metric,
                 const std::vector<std::vector<double>>& groups) {
   std::vector<double> all;
@@ -71,7 +71,7 @@ void draw_boxes(FigureLayout& layout, const Box& box, const std::string& metric,
     boxes += "\n";
     if (values.size() > kMostDots) continue;
     for (std::size_t i = 0; i < values.size(); ++i) {
-      // Spreads dots by steps of the golden ratio, so that neighbours in value lie apart.
+      // Shifts the dots by steps of the golden ratio, which separates dots with similar values.
       const double shift = 0.5 * (std::fmod(0.6180339887 * static_cast<double>(i), 1.0) - 0.5);
       dots += fmt::format("{:.10g} {:.3f}\n", values[i] / scale.factor, static_cast<double>(g + 1) + shift);
     }
@@ -92,7 +92,7 @@ void draw_boxes(FigureLayout& layout, const Box& box, const std::string& metric,
   layout.plot(box, settings, clauses);
 }
 
-/// Returns the metrics of the figure of which some job has a value.
+/// Returns those metrics of the figure for which at least one job has a value.
 std::vector<std::string> drawn_metrics(const std::vector<Group>& groups, const std::vector<Row>& results) {
   std::vector<std::string> out{"object_taps", main_error(results), "footprint_iou", "robot_seconds"};
   const auto is_absent = [&](const std::string& metric) {
@@ -103,7 +103,8 @@ std::vector<std::string> drawn_metrics(const std::vector<Group>& groups, const s
   return out;
 }
 
-/// Writes the names of the groups in up to three lines each, the first at `top`, the next ones at a distance of `step`.
+/// Writes the names of the groups in at most three lines each. The first name is at `top`; `step` is the distance
+/// between names.
 void write_names(FigureLayout& layout, const std::vector<Group>& groups, double top, double step) {
   for (std::size_t g = 0; g < groups.size(); ++g) {
     std::vector<std::string> lines = wrapped(groups[g].name, kLongestName);
@@ -173,13 +174,13 @@ std::string tics(const std::vector<std::string>& values) {
   return "(" + out + ")";
 }
 
-/// Mean errors by the values of two keys, NaN for no value.
+/// Mean errors by the values of two keys; NaN where no job has a value.
 struct HeatMap {
   Axis x;
   Axis y;
   std::string error;
-  std::vector<std::vector<double>> cells;  ///< rows by y
-  std::vector<double> means;               ///< of all cells with a value
+  std::vector<std::vector<double>> cells;  ///< one row per value of the key on the y axis
+  std::vector<double> means;               ///< values of all cells that have one
 };
 
 HeatMap heat_map_of(const Sweep& sweep, const std::vector<Row>& results, const std::vector<std::string>& keys) {
@@ -196,7 +197,7 @@ HeatMap heat_map_of(const Sweep& sweep, const std::vector<Row>& results, const s
   return out;
 }
 
-/// Adds the cells as a matrix, and their numbers in black on light colours, in white on dark ones.
+/// Adds the cells as a matrix with their numbers. Numbers are black on light colours and white on dark ones.
 void add_cells(FigureLayout& layout, const HeatMap& map, const Scale& scale, const Colours& colours) {
   std::string matrix;
   std::string numbers;
@@ -214,7 +215,7 @@ void add_cells(FigureLayout& layout, const HeatMap& map, const Scale& scale, con
   layout.data("numbers", numbers);
 }
 
-/// Returns "rmse_m, mean over seed, taps; the first 24 values of a key".
+/// Returns the text of the heat map: "rmse_m, mean over seed, taps; the first 24 values of a key".
 std::string heat_map_words(const Sweep& sweep, const HeatMap& map, const std::vector<std::string>& keys) {
   std::vector<std::string> over;
   if (std::find(sweep.keys.begin(), sweep.keys.end(), "seed") != sweep.keys.end()) over.emplace_back("seed");
@@ -229,7 +230,8 @@ std::size_t longest_of(const std::vector<std::string>& values) {
   return out;
 }
 
-/// Draws the mean error by the first two swept keys but the seed that have several values; nothing without two.
+/// Draws the mean error by the first two swept keys with several values, the seed excluded. Returns nullopt if there
+/// are fewer than two.
 std::optional<Figure> heat_map(const Sweep& sweep, const std::vector<Row>& results) {
   const std::vector<std::string> keys = varying_keys(sweep, setting_keys(sweep));
   if (keys.size() < 2) return {};
@@ -267,8 +269,8 @@ std::optional<Figure> heat_map(const Sweep& sweep, const std::vector<Row>& resul
   return Figure{"heat_map", std::move(layout)};
 }
 
-/// Returns the error over the taps, in groups of all keys that vary; nullopt unless the values after each tap are
-/// stored.
+/// Returns the error over the taps. All keys that vary form the groups. Returns nullopt unless the values after each
+/// tap are stored.
 std::optional<GroupCurves> kept_curves(const Sweep& sweep, const std::vector<Row>& results) {
   if (!TapSummaries::any_kept(sweep)) return std::nullopt;
   std::vector<TapValues> values(sweep.jobs.size());

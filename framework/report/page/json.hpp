@@ -34,13 +34,13 @@ namespace palpate {
 
 using Json = nlohmann::json;
 
-/// Converts a row to a flat object, whose names keep their dots.
+/// Converts a row to a flat object. Dots in the names of fields are kept.
 inline void to_json(Json& out, const Row& row) {
   out = Json::object();
   for (const auto& [name, value] : row.fields) out[name] = std::visit([](const auto& one) { return Json(one); }, value);
 }
 
-/// Converts a table to {titles, rows, left}, with `left` text columns before the numbers.
+/// Converts a table to {titles, rows, left}, where `left` is the number of text columns before the numbers.
 inline void to_json(Json& out, const Table& table) {
   auto rows = table.cells();
   const std::vector<std::string> titles = rows.front();

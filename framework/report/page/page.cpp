@@ -13,7 +13,7 @@
 #include <boost/archive/iterators/base64_from_binary.hpp>
 #include <boost/archive/iterators/transform_width.hpp>
 
-// Assets of all pages: plotly.js as vendored, compressed by gzip; the style; the common script.
+// Assets of all pages: plotly.js from the vendor folder, compressed by gzip, the style, and the common script.
 extern "C" const char palpate_asset_plotly[], palpate_asset_plotly_end[];
 extern "C" const char palpate_asset_style[], palpate_asset_common[];
 
@@ -25,7 +25,7 @@ std::string packed(const char* name, const char* format, std::string_view bytes)
   return fmt::format("<script type=\"application/{}\" id=\"{}\">{}</script>\n", format, name, base64(bytes));
 }
 
-/// Returns the colours of colours.hpp for scripts.
+/// Returns the colours of colours.hpp as JSON for the scripts.
 Json json_of_colours() {
   const auto stops = [](Palette palette) {
     const std::vector<std::string>& all = palette_stops(palette);
@@ -80,7 +80,7 @@ std::string make_page(std::string_view script, const Json& data, const std::stri
       "content=\"width=device-width\">\n<title>palpate</title>\n<style>\n{}</style>\n</head>\n<body>\n<noscript>This "
       "page needs JavaScript, which your browser does not run.</noscript>\n",
       kPolicy, of == PageOf::server ? "; connect-src 'self'" : "",
-      // keeps browsers from asking for an icon
+      // An empty icon keeps browsers from requesting one from the server.
       of == PageOf::server ? "<link rel=\"icon\" href=\"data:,\">\n" : "", palpate_asset_style);
   static const std::string plotly =
       packed("plotly", "gzip",

@@ -44,7 +44,7 @@ Json json_of_run(const RecordedRun& recording, const History& history) {
           {"any_side", recording.is_any_side()}};
 }
 
-/// Returns the config as a table of paths, values and origins, the files that config.yaml was composed from.
+/// Returns the config as a table of paths, values and origins. An origin is a file from which config.yaml was composed.
 Table config_table(const RecordedRun& recording) {
   const std::map<std::string, std::string> known = recorded_origins(recording.directory);
   Table table;
@@ -122,7 +122,7 @@ static void to_json(Json& out, const RunAtTap& moment) {
 static void to_json(Json& out, const Curve& curve) { out = {{"name", curve.name}, {"values", curve.values}}; }
 
 static void to_json(Json& out, const CurvePanel& panel) {
-  constexpr const char* kAxes[] = {"free", "from_zero", "share", "logarithmic"};  // by CurveAxis
+  constexpr const char* kAxes[] = {"free", "from_zero", "share", "logarithmic"};  // names in the order of CurveAxis
   out = {{"title", panel.title},
          {"unit", panel.unit},
          {"axis", kAxes[static_cast<std::size_t>(panel.axis)]},
@@ -170,7 +170,8 @@ PackedMaps pack_maps(const std::vector<Eigen::VectorXf>& frames) {
   return out;
 }
 
-/// Returns `get` of each element, rounded: the first value, then differences between neighbours, which compress well.
+/// Returns the rounded values of `get` for all elements: first the first value, then the differences between
+/// neighbours, which compress well.
 template <class List, class Get>
 static std::vector<long> steps_of(const List& list, const Get& get) {
   std::vector<long> out;
@@ -206,7 +207,7 @@ static Json json_of_surface(const Surface& mesh) {
           {"j", corners(1)}, {"k", corners(2)}, {"deviation", deviations}};
 }
 
-/// Returns the status at the time of reading, as for all other data of the page.
+/// Returns the status of the run when `recording` was read, which is also the time of all other data of the page.
 static RunStatus status_of(const RecordedRun& recording) {
   if (recording.summary) {
     const auto state = recording.failed() ? RunStatus::State::failed : RunStatus::State::done;
@@ -216,7 +217,7 @@ static RunStatus status_of(const RecordedRun& recording) {
   return {now.end ? RunStatus::State::running : now.state, 0, ""};
 }
 
-/// Returns the data that may change with every tap. `history` has at least one moment.
+/// Returns the data that every tap may change. `history` has at least one moment.
 static Json json_of_standing(const RecordedRun& recording, const History& history) {
   const RunStatus status = status_of(recording);
   const Curves curves = curves_of(recording, history);
@@ -260,7 +261,7 @@ std::string add_maps(Json& data, const History& history, std::size_t stride, std
   for (const MapSeries& one : history.maps) {
     if (!only.empty() && one.name != only) continue;
     std::vector<Eigen::VectorXf> frames;
-    if (one.name == "truth") frames = one.frames;  // one frame for all moments
+    if (one.name == "truth") frames = one.frames;  // The truth has one frame for all moments.
     for (std::size_t i = last % stride; i <= last && one.name != "truth"; i += stride) frames.push_back(one.frames[i]);
     const PackedMaps packed = pack_maps(frames);
     described.push_back(
@@ -280,7 +281,8 @@ std::string add_maps(Json& data, const History& history, std::size_t stride, std
 std::string run_page(const RecordedRun& recording, const History& history, const OnProgress& progress) {
   Json data = run_data(recording, history);
   const int last = history.moments.back().taps;
-  // Maps never compress to a tenth: with more bytes the page would be too large.
+  // Maps do not compress to less than a tenth of their size. With more than kMostRaw bytes, the page would be too
+  // large.
   constexpr double kMostRaw = 19e6;
   double raw = 0.0;
   for (const MapSeries& one : history.maps)

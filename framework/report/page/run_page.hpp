@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The page of a run: its data, which web/run.js draws.
+// The page of a run. These functions make its data, and web/run.js draws it.
 #pragma once
 
 #include "record/field.hpp"
@@ -10,47 +10,49 @@
 
 namespace palpate {
 
-/// Largest size of a page, bytes, so that it can be mailed. A run whose maps exceed it has maps at every second, third,
-/// fifth, ... moment, and a note on the page.
+/// Largest size of a page in bytes. Pages of this size can be sent by mail. If the maps of a run exceed it, the page
+/// has maps of every second, third, fifth, ... moment only, and a note about this.
 inline constexpr std::size_t kMostPageBytes = 4'000'000;
 
-/// Returns the page of a run. `progress` is also called while maps are packed, which takes as long as computing them.
+/// Returns the page of a run. `progress` is also called while maps are packed, because packing takes as long as
+/// computing them.
 std::string run_page(const RecordedRun& recording, const History& history, const OnProgress& progress);
 
-/// Returns the page of a run that goes on, for a server. The page asks its server for the moments after those of
-/// `history`, which has as many taps as `recording`. `at` is the position in the record that the page reports.
+/// Returns the page of a run that is not finished, for a server. The page requests the moments after those of `history`
+/// from its server. `history` has as many taps as `recording`. `at` is the position in the record that the page sends
+/// with its requests.
 std::string live_run_page(const RecordedRun& recording, const History& history, const std::string& at);
 
-/// Returns the page of a run without anything to show yet; `why` is the reason in words. The page asks its server as
-/// that of live_run_page() does.
+/// Returns the page of a run that has nothing to show yet. `why` is the reason in words. The page sends requests to its
+/// server, as the page of live_run_page() does.
 std::string waiting_page(const std::string& name, const std::string& id, const std::string& why, const std::string& at);
 
-/// Returns an update for a page with the first `moments` moments: JSON on one line with the other moments, their maps,
-/// and all data that may change with a tap. `history` has maps of these moments alone. After the update the page is at
-/// position `at`.
+/// Returns an update for a page that has the first `moments` moments: JSON on one line with the other moments, their
+/// maps, and all data that a tap may change. `history` has maps of these other moments only. After the update the page
+/// is at position `at`.
 std::string run_news(const RecordedRun& recording, const History& history, int moments, const std::string& at);
 
-/// Maps in a compact form. Differences of 16-bit numbers between neighbouring cells, with low and high bytes apart,
-/// compress best: smooth maps have small differences.
+/// Maps in a compact form: differences of 16-bit numbers between neighbouring cells, with the low bytes separate from
+/// the high bytes. This form compresses best, because neighbouring cells of smooth maps differ little.
 struct PackedMaps {
   double least = 0.0;
   double most = 0.0;
   std::string bytes;
 };
 
-/// Packs frames with the same number of finite cells. A cell becomes an integer from 0, the least value of all frames,
-/// to 65535, the greatest, with an error of at most 1 / 131070 of that range. Each frame is stored as differences
+/// Packs frames with the same number of finite cells. Each cell becomes an integer from 0 (the least value of all
+/// frames) to 65535 (the greatest). The error is at most 1 / 131070 of this range. Each frame is stored as differences
 /// between neighbouring cells modulo 65536: first all low bytes, then all high bytes.
 PackedMaps pack_maps(const std::vector<Eigen::VectorXf>& frames);
 
-/// Returns the errors that pages show: those against the truth, and the expected error.
+/// Returns the errors that pages show: the errors against the truth, and the expected error.
 std::vector<RecordField> page_errors();
 
 /// Returns the data of a run's page without maps and surfaces.
 Json run_data(const RecordedRun& recording, const History& history);
 
-/// Adds the maps or surfaces of every `stride`-th shown moment, counted from the last, to `data`. Returns the bytes of
-/// the maps. `only` selects the map with that name.
+/// Adds the maps or surfaces of every `stride`-th shown moment to `data`, counted backwards from the last moment.
+/// Returns the bytes of the maps. If `only` is not empty, adds only the map with that name.
 std::string add_maps(Json& data, const History& history, std::size_t stride, std::string_view only = "");
 
 }  // namespace palpate

@@ -19,7 +19,8 @@ namespace {
 
 std::string letter_of(std::size_t run) { return std::string(1, static_cast<char>('A' + run)); }
 
-/// Returns the keys whose values differ between the configs, with the value in each run; "" if a run lacks it.
+/// Returns the keys whose values differ between the configs, with the value in each run. If a run has no such key, its
+/// value is "".
 Table differences_table(const std::vector<ComparedRun>& runs) {
   std::vector<Row> configs;
   for (const ComparedRun& run : runs) configs.push_back(read_settings(run.recording.directory));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The page that compares several runs: its data, which web/runs.js draws.
+// The page that compares several runs. These functions make its data, and web/runs.js draws it.
 #pragma once
 
 #include "report/history.hpp"
@@ -9,7 +9,7 @@
 
 namespace palpate {
 
-/// Largest number of runs on a page, limited by distinct colours.
+/// Largest number of runs on a page. More runs would not have distinct colours.
 inline constexpr std::size_t kMostRunsOnAPage = 8;
 
 /// A run and its history.
@@ -18,9 +18,9 @@ struct ComparedRun {
   History history;
 };
 
-/// Returns a page of 2 to kMostRunsOnAPage runs: errors over taps and over robot time, surfaces after a number of taps,
-/// differences from the first surface where the candidates are the same, and differences between the configs. It is at
-/// most as large as the page of a run. `progress` is called while maps are packed.
+/// Returns a page of 2 to kMostRunsOnAPage runs. It shows errors over taps and over robot time, surfaces after a number
+/// of taps, and differences between the configs. If the candidates are equal, it also shows the differences from the
+/// first surface. The page is at most kMostPageBytes large. `progress` is called while maps are packed.
 std::string runs_page(const std::vector<ComparedRun>& runs, const OnProgress& progress);
 
 }  // namespace palpate

@@ -18,8 +18,8 @@
 namespace palpate {
 namespace {
 
-constexpr std::size_t kMostGroupsOfAScene = 2 * kLineColours.size();  ///< each colour is used for a solid and a dashed
-                                                                      ///< line
+/// Each colour is used for a solid and a dashed line.
+constexpr std::size_t kMostGroupsOfAScene = 2 * kLineColours.size();
 
 /// Returns the choices of keys for groups: all keys together, then each key alone. Choices with too many groups are
 /// left out.

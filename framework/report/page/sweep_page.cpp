@@ -25,8 +25,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Returns a swept key, its values, and the index of each job's value. Values of one dimension are sorted as numbers,
-/// others stay in the order of the sweep; "" for no such option comes first.
+/// Returns a swept key, its values, and the index of each job's value. Numeric values of one dimension are sorted;
+/// other values keep the order of the sweep. The value "" of jobs without this option comes first.
 Json json_of_key(const Sweep& sweep, const std::vector<JobResult>& jobs, const std::string& key) {
   std::vector<JobGroup> groups = group_jobs(sweep, {}, {key});
   std::map<std::string, double> numbers;
@@ -58,14 +58,14 @@ Json json_of_key(const Sweep& sweep, const std::vector<JobResult>& jobs, const s
   return {{"name", key}, {"values", values}, {"of_job", of_job}};
 }
 
-/// A column of results.csv as numbers, one per job of the page.
+/// A column of results.csv as numbers, one per job on the page.
 struct NumberColumn {
   Column column;
   std::vector<std::optional<double>> numbers;
 };
 
-/// Returns the columns of the results that hold numbers and nothing else. A column with the name of a key holds the
-/// result, not the key's value.
+/// Returns the columns of the results that hold only numbers. If a key and a result have the same name, the column
+/// holds the result.
 std::vector<NumberColumn> number_columns(const std::vector<Row>& results, const std::vector<JobResult>& jobs) {
   std::vector<NumberColumn> columns;
   const std::vector<std::string> names = names_of(results);
@@ -98,7 +98,7 @@ Json json_of_column(const NumberColumn& one) {
           {"is_error", can_be_error(one.column)}};
 }
 
-/// Returns for each of `jobs` the number of its unit of statistics.
+/// Returns the number of the unit of statistics (JobUnits) for each of `jobs`.
 std::vector<std::size_t> unit_numbers(const Sweep& sweep, const std::vector<Row>& results,
                                       const std::vector<JobResult>& jobs) {
   const JobUnits units(sweep, results);
@@ -108,15 +108,15 @@ std::vector<std::size_t> unit_numbers(const Sweep& sweep, const std::vector<Row>
   return of_job;
 }
 
-/// The jobs of a page that differ in the seed alone.
+/// The jobs on a page that differ only in the seed.
 struct PageSetting {
-  std::vector<std::size_t> jobs;  ///< indices
+  std::vector<std::size_t> jobs;  ///< indices of the jobs
   std::size_t scene = 0;
 };
 
 std::vector<PageSetting> settings_of(const Sweep& sweep, const std::vector<JobResult>& jobs) {
   const std::vector<std::string> scenes = scene_keys(sweep);
-  std::map<int, std::size_t> places;  // of the jobs on the page, by their index in the sweep
+  std::map<int, std::size_t> places;  // position on the page of each job, by the job's index in the sweep
   for (std::size_t i = 0; i < jobs.size(); ++i) places[jobs[i].job->index] = i;
   std::map<std::string, std::size_t> known;
   std::vector<PageSetting> out;
@@ -148,7 +148,7 @@ Estimates estimate_settings(const std::vector<PageSetting>& settings, const std:
   return out;
 }
 
-/// Returns for each setting the mean, half the width of its 95 % interval, and the numbers of values and of clusters.
+/// Returns the mean of each setting, half the width of its 95 % interval, and the numbers of values and of clusters.
 Json json_of_estimates(const Estimates& estimates) {
   Json out = Json::array();
   for (const auto& [count, clusters, mean, ends] : estimates) {
@@ -158,7 +158,8 @@ Json json_of_estimates(const Estimates& estimates) {
   return out;
 }
 
-/// Returns the settings on the fronts of each cost and error, sorted by scene and cost: {cost: {error: [settings]}}.
+/// Returns the settings on the Pareto fronts of all pairs of cost and error, sorted by scene and cost: {cost: {error:
+/// [settings]}}.
 Json json_of_fronts(const std::vector<PageSetting>& settings, const std::vector<NumberColumn>& columns,
                     const std::vector<Estimates>& estimates) {
   Json out = Json::object();
@@ -184,8 +185,8 @@ Json json_of_fronts(const std::vector<PageSetting>& settings, const std::vector<
   return out;
 }
 
-/// Returns which jobs are on the page: every `step`-th along the settings, one after the other. Each setting has its
-/// share, and settings with the same seeds keep the same seeds.
+/// Returns which jobs are on the page: every `step`-th job in the list of all settings with their jobs. Every setting
+/// has about the same share of its jobs on the page. Settings with the same seeds keep the same seeds.
 std::vector<bool> drawn_jobs(const Sweep& sweep, std::size_t step) {
   std::vector<bool> drawn(sweep.jobs.size(), true);
   if (step == 1) return drawn;
@@ -231,8 +232,8 @@ class Tally {
     std::string reason;
     std::size_t jobs;
   };
-  std::map<std::string, std::size_t> counts_;  ///< by state
-  std::vector<Failure> failures_;              ///< one per reason
+  std::map<std::string, std::size_t> counts_;  ///< numbers of jobs by state
+  std::vector<Failure> failures_;              ///< one entry per reason
   std::map<std::string, std::size_t> places_;  ///< indices in `failures_` by reason
 };
 
@@ -247,7 +248,7 @@ Json json_of_job(const Job& job, const RunStatus& standing, const fs::path& dire
 
 /// The jobs of a page, and a tally of all jobs.
 struct PageJobs {
-  std::vector<Row> results;  ///< of the jobs that have ended
+  std::vector<Row> results;  ///< rows of the jobs that have ended
   std::vector<JobResult> jobs;
   Json described;
   Tally tally;
@@ -257,7 +258,7 @@ struct PageJobs {
 PageJobs read_page_jobs(const Sweep& sweep, std::size_t step, const OnProgress& progress) {
   const std::vector<bool> drawn = drawn_jobs(sweep, step);
   PageJobs out;
-  out.results.reserve(sweep.jobs.size() / step + 1);  // `jobs` point to its elements
+  out.results.reserve(sweep.jobs.size() / step + 1);  // The elements must not move, because `jobs` points to them.
   int looked_at = 0;
   read_jobs(sweep, all_jobs(sweep), read_standing, [&](std::size_t index, RunStatus now) {
     const Job& job = sweep.jobs[index];
@@ -272,7 +273,7 @@ PageJobs read_page_jobs(const Sweep& sweep, std::size_t step, const OnProgress& 
   return out;
 }
 
-/// Adds to the data of a page the columns with their means over settings, and the fronts.
+/// Adds the columns with their means over settings, and the fronts, to the data of a page.
 void add_columns(Json& data, const Sweep& sweep, const std::vector<JobResult>& jobs,
                  const std::vector<NumberColumn>& columns, const std::vector<std::size_t>& units) {
   const std::vector<PageSetting> settings = settings_of(sweep, jobs);
@@ -283,7 +284,7 @@ void add_columns(Json& data, const Sweep& sweep, const std::vector<JobResult>& j
   for (const NumberColumn& one : columns) {
     estimates.push_back(estimate_settings(settings, jobs, one, units));
     data["columns"].push_back(json_of_column(one));
-    // Where each setting has one job, the job's number is the mean.
+    // If each setting has one job, the job's number is the mean.
     if (settings.size() < jobs.size()) data["columns"].back()["estimates"] = json_of_estimates(estimates.back());
   }
   data["fronts"] = json_of_fronts(settings, columns, estimates);

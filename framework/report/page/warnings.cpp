@@ -16,7 +16,7 @@ int diagnostics(const RunResult& result, const char* kind) {
   return found != result.state.diagnostics.end() ? found->second : 0;
 }
 
-/// Adds "3 taps" with `what` about them; nothing if `count` is 0.
+/// Adds a text such as "3 taps", followed by `what`. Adds nothing if `count` is 0.
 void add_counted(std::vector<std::string>& out, int count, const char* noun, const char* what) {
   if (count > 0) out.push_back(counted(count, noun) + what);
 }
@@ -27,7 +27,7 @@ bool other_way(const TapLine& one, const TapLine& other) {
   return one.start != other.start || one.direction != other.direction;
 }
 
-/// Returns the first tap that this build would have made elsewhere; 0 if there is none.
+/// Returns the first tap for which this build would have chosen another position; 0 if there is none.
 int first_drift(const RecordedRun& recording, const History& history) {
   for (std::size_t i = 0; i < recording.taps.size(); ++i) {
     const std::optional<TapRecord>& next = history.moments[i].next;

@@ -9,7 +9,8 @@
 
 namespace palpate {
 
-/// Returns one or two sentences per warning, the gravest first; empty for a run without trouble.
+/// Returns one or two sentences per warning, with the most serious warning first. Returns an empty list for a run
+/// without problems.
 std::vector<std::string> warnings_of(const RecordedRun& recording, const History& history);
 
 }  // namespace palpate

@@ -20,7 +20,8 @@
 namespace palpate {
 namespace {
 
-/// Adds the values of the maps at the tap: u, and w with e or the probability of `footprint`, whichever the record has.
+/// Adds the values of the maps at the tap's position. These are u and, depending on the record, either w and e or the
+/// probability of `footprint`.
 void explain_place(TextSections& sections, const Row& row, const std::string& footprint) {
   std::vector<std::string> said;
   const auto say = [&](const char* name, const std::string& before, const std::string& meaning) {
@@ -51,14 +52,14 @@ class FromAboveExplained final : public Explanation {
     explain_expectation();
     explain_outcome();
     text_.heading("Effect of the tap");
-    // The record of the next tap, or the summary, has the errors after this tap.
+    // The errors after this tap are in the record of the next tap, or in the summary.
     const bool last = number_ == static_cast<int>(recording_.rows.size());
     explain_errors(row_,
                    !last ? recording_.rows[static_cast<std::size_t>(number_)] : recording_.summary.value_or(Row{}));
     explain_doubt();
   }
 
-  /// Whether the record of the tap has the state of any model.
+  /// Returns whether the record of the tap has the state of any model.
   bool has_models() const {
     const auto has = [&](const char* field) { return row_.number(field).has_value(); };
     return has("height_gp.signal") || has("label_gp.signal") || has("surface_gp.signal") || has("p");
@@ -71,7 +72,7 @@ class FromAboveExplained final : public Explanation {
     return grid_.nearest(tap.target().x, tap.target().y, experiment_.scene().area());
   }
 
-  // The choice.
+  // The following functions explain the choice.
 
   void explain_choice() {
     switch (tap_.request.source) {
@@ -84,7 +85,7 @@ class FromAboveExplained final : public Explanation {
         break;
       case Source::fallback:
         explain_fallback();
-        explain_score(1.0);  // of u
+        explain_score(1.0);  // u is the score, and is 1 before any tap
         break;
       case Source::caller:
         text_.add("The caller chose it, by scores of its own.");
@@ -109,7 +110,7 @@ class FromAboveExplained final : public Explanation {
                       number_, options_.seed));
       return;
     }
-    // by InitialOptions::Design
+    // in the order of InitialOptions::Design
     constexpr const char* kHow[] = {"random: drawn from the candidates by the seed alone",
                                     "sobol: a sequence that spreads evenly, shifted by the seed",
                                     "grid: a lattice over the area"};
@@ -137,7 +138,7 @@ class FromAboveExplained final : public Explanation {
         "u.");
   }
 
-  /// Returns the number of candidates that must not be tapped again.
+  /// Returns the number of candidates that the choice excluded because they must not be tapped again.
   int left_out() {
     std::set<int> out;
     for (int i = 0; i < number_ - 1; ++i) {
@@ -179,7 +180,7 @@ class FromAboveExplained final : public Explanation {
     explain_second(*score);
   }
 
-  /// For scores that hardly distinguish the candidates: explains why the acquisition chose all the same.
+  /// If the scores hardly distinguish the candidates, explains why the acquisition still chose the tap.
   void explain_flatness(double best, double bound, bool equal) {
     if (options_.choice.fallback == ChoiceOptions::Fallback::none) {
       if (best > 0.0 && !equal) return;
@@ -210,7 +211,7 @@ class FromAboveExplained final : public Explanation {
                             fmt::join(earlier, ", ")));
   }
 
-  // The tap.
+  // The following functions explain the tap.
 
   void explain_expectation() {
     const bool two_part = belief_option(options_, "surface") == "two_part";
@@ -255,7 +256,7 @@ class FromAboveExplained final : public Explanation {
     text_.add(text);
   }
 
-  /// Adds whether the tap is a suspected outlier, right after it and after all taps.
+  /// Adds whether the tap was a suspected outlier right after it, and whether it is one after all taps.
   void explain_doubt() {
     if (belief_option(options_, "height.outlier_probability").empty() || !tap_.is_contact()) return;
     text_.heading("Is it an outlier?");
@@ -275,7 +276,7 @@ class FromAboveExplained final : public Explanation {
 
   const CandidateGrid grid_ = grid_of(belief_.candidates());
   const Context context_{environment_.host, experiment_.scene(), static_cast<std::uint64_t>(options_.seed), nullptr};
-  std::optional<double> expected_;  ///< expected height; the height of an object says nothing about the desk
+  std::optional<double> expected_;  ///< expected height; nullopt for a desk tap with a two-part surface
 };
 
 }  // namespace

@@ -19,7 +19,7 @@ using Eigen::Vector3d;
 
 /// Returns "from x 1.00 cm, y 2.00 cm, z 3.00 cm, coming down at 20 degrees".
 std::string line_words(const TapLine& line) {
-  constexpr double kDegrees = 57.29577951308232;  // of a radian
+  constexpr double kDegrees = 57.29577951308232;  // degrees per radian
   const double degrees = kDegrees * std::asin(std::clamp(-line.direction.z(), -1.0, 1.0));
   const std::string slope = degrees > 85.0            ? "straight down"
                             : std::abs(degrees) < 3.0 ? "level"
@@ -96,7 +96,7 @@ class ApproachExplained final : public Explanation {
     explain_second(scores, now->candidate);
   }
 
-  /// Adds the expected effects of the tap, if the scores use them.
+  /// Adds the expected effects of the tap, if they determine the scores.
   void explain_gains(int chosen) {
     const auto add = [&](const char* quantity, const char* sentence) {
       if (belief_.available().count(quantity) == 0) return;
@@ -119,7 +119,7 @@ class ApproachExplained final : public Explanation {
     explain_runner_up(line_words(belief_.candidates().line(second)), scores(chosen), scores(second));
   }
 
-  /// Adds the recorded score of a program, which is not started for a report.
+  /// Adds the recorded score of an acquisition program, because reports do not start programs.
   void explain_score() {
     if (const auto score = row_.number("score"))
       text_.add(fmt::format("Its score is {}; the program's scores of the other lines are not recorded.",
@@ -129,7 +129,7 @@ class ApproachExplained final : public Explanation {
   using Particle = LineFacts::Particle;
   const std::vector<Particle>& all() const { return facts_.particles; }
 
-  /// Adds the belief's values where the line meets the surface.
+  /// Adds the belief's values at the position where the line is expected to meet the surface.
   void explain_place() {
     if (!all().front().on_object) return text_.add("According to the most probable particle, no object is there.");
     text_.add(fmt::format(
@@ -201,7 +201,7 @@ class ApproachExplained final : public Explanation {
   }
 
   const TapLine& line_ = tap_.request.line;
-  LineFacts facts_;                 ///< of the belief before the tap
+  LineFacts facts_;                 ///< values of the belief along the line, before the tap
   std::optional<double> expected_;  ///< expected path length to an object
 };
 

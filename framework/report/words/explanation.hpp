@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Common parts of explanations of taps from above and from any side.
+// Common part of the explanations of taps from above and from any side.
 #pragma once
 
 #include "report/history.hpp"
@@ -21,12 +21,12 @@ class Explanation {
   std::string text();
 
  protected:
-  /// Writes the text; the models are in their state before the tap.
+  /// Writes the text. The models must be in their state before the tap.
   virtual void explain() = 0;
 
   std::string heading(const std::string& where) const;
   std::string acquisition_words() const;
-  /// Adds the second best choice, at `where`, with the score `second`.
+  /// Adds the second best candidate, at `where`, with its score `second`.
   void explain_runner_up(const std::string& where, double score, double second);
   /// Adds a remark if the contact's label changed after the tap.
   void explain_label();

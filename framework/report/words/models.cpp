@@ -12,11 +12,11 @@
 namespace palpate {
 namespace {
 
-/// A GP with its fields in the record and its units.
+/// A GP, with the prefix of its fields in the record and the unit of its targets.
 struct Subject {
   const char* title;
-  std::string prefix;  ///< of its fields, with the dot
-  bool metric;         ///< whether targets are metres, else labels
+  std::string prefix;  ///< prefix of the GP's fields in the record, with the dot
+  bool metric;         ///< whether the targets are heights in metres; otherwise they are labels
   const PluginChoice& kernel;
   const PluginChoice& fitting;
   const Context& context;
@@ -41,7 +41,8 @@ std::string parameter_words(std::string name) {
 
 std::string kernel_words(const Subject& subject) {
   std::string out = subject.kernel.type;
-  const auto parameters = subject.context.create<Kernel>(subject.kernel)->parameters();  // the record has no units
+  // The kernel has the units, which the record lacks.
+  const auto parameters = subject.context.create<Kernel>(subject.kernel)->parameters();
   const Row numbers = numbers_below(subject.row, subject.prefix + "kernel.");
   for (const auto& field : numbers.fields) {
     Unit unit = Unit::none;
@@ -82,7 +83,7 @@ void explain_likelihood(TextSections& sections, const Subject& subject) {
   if (!parts.empty()) sections.add(fmt::format("{}.", fmt::join(parts, "; ")));
 }
 
-/// Returns the engine, and its measures against rounding errors.
+/// Returns a text about the engine and its measures against rounding errors.
 std::string rounding_words(const Subject& subject) {
   const double bound = subject.number("error_bound").value_or(0.0);
   const double jitter = subject.number("jitter").value_or(0.0);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The models of a recorded choice in words.
+// Texts about the models at a recorded choice.
 #pragma once
 
 #include "experiment/experiment_options.hpp"
@@ -9,8 +9,8 @@
 
 namespace palpate {
 
-/// Adds a paragraph per GP in the record of the tap: hyperparameters with their fit, likelihood, condition, engine,
-/// jitter, and range of its map. `context` creates kernels, which know the units of their parameters.
+/// Adds one paragraph per GP in the record of the tap: hyperparameters with their fit, likelihood, condition, engine,
+/// jitter, and range of the map. `context` creates the kernels, because the kernels have the units of their parameters.
 void explain_models(TextSections& sections, const Row& row, const ExperimentOptions& options,
                     const HeightMapOptions& own, const Context& context);
 

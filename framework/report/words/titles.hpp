@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Titles of maps and errors, for pages, figures and texts.
+// Titles of maps and errors for pages, figures and texts.
 #pragma once
 
 #include "experiment/experiment_options.hpp"
@@ -17,7 +17,7 @@ std::map<std::string, std::string> map_titles(const ExperimentOptions& options);
 /// Returns the title of an error: "error over the scene", "footprint IoU".
 std::string error_title(const RecordField& error);
 
-/// Returns the title of the errors that are lengths: "Error of the surface (rms)".
+/// Returns the common title of the errors that are lengths: "Error of the surface (rms)".
 std::string surface_error_title(bool any_side);
 
 }  // namespace palpate

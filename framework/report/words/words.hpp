@@ -10,7 +10,7 @@
 
 namespace palpate {
 
-/// Returns at most four digits: "0.3848", "-1.2e-05".
+/// Returns a number with at most four digits: "0.3848", "-1.2e-05".
 std::string plain_words(double value);
 
 /// Returns a length in a suitable unit with at most four digits: "0.1 mm", "9.07 cm", "1.2 m", "0 cm".
@@ -19,35 +19,35 @@ std::string length_words(double metres);
 /// Returns an error with at most three digits: "2.61 mm".
 std::string error_words(double metres);
 
-/// Returns a time as in the table of a run: "2.0 s".
+/// Returns a time in the format of the table of a run: "2.0 s".
 std::string seconds_words(double seconds);
 
-/// Returns "x 12.97 cm, y 7.59 cm", as in the table of a run.
+/// Returns "x 12.97 cm, y 7.59 cm", in the format of the table of a run.
 std::string place_words(double x, double y);
-/// Returns a height or another coordinate: "3.00 cm".
+/// Returns a height or another coordinate in the same format: "3.00 cm".
 std::string place_words(double coordinate);
 
-/// Returns the number in a field of a row, formatted by `words`; "" if there is none.
+/// Returns the number in a field of a row, formatted by `words`. Returns "" if there is no number.
 std::string number_words(const Row& row, std::string_view field, std::string (*words)(double) = plain_words);
 
-/// Returns the numbers whose fields begin with `prefix`, by their names without it.
+/// Returns the numbers in the fields whose names begin with `prefix`. The prefix is removed from the names.
 Row numbers_below(const Row& row, const std::string& prefix);
 
-/// Returns probability and reason of a suspected outlier: "97 %, by its height, which does not fit the heights of the
-/// other taps".
+/// Returns the probability of a suspected outlier, with the reason: "97 %, by its height, which does not fit the
+/// heights of the other taps".
 std::string doubt_words(const TapReading& one);
 
-/// Returns a sentence, without its full stop, for a run whose truth is no longer known (RunReplay::truth_lost()).
+/// Returns a sentence about a run whose truth is no longer known (RunReplay::truth_lost()). The full stop is left out.
 std::string truth_lost_words(const Error& lost);
 
 /// Returns "1 tap", "3 taps".
 std::string counted(long count, const std::string& noun);
 
-/// Text in sections: headings, and items below them, in lines of at most 100 letters.
+/// Text in sections for terminals. A section has a heading and items below it, in lines of at most 100 letters.
 class TextSections {
  public:
   void heading(const std::string& text);
-  /// Adds an item of one or two sentences. Control characters become blanks.
+  /// Adds an item of one or two sentences. Control characters are replaced by blanks.
   void add(const std::string& text);
   const std::string& text() const { return text_; }
 

@@ -17,7 +17,7 @@ using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::Ro
 constexpr char kMagic[] = "\x93NUMPY\x01\x00";
 constexpr std::size_t kMagicLength = 8;
 
-/// Returns an NPY file with this shape ("2209,") and `bytes` of data.
+/// Returns an NPY file with the shape `shape`, such as "2209,", and `bytes` bytes of data.
 std::string npy(const char* type, const std::string& shape, const void* data, std::size_t bytes) {
   constexpr std::size_t kAlign = 64;
   std::string header = fmt::format("{{'descr': '{}', 'fortran_order': False, 'shape': ({}), }}", type, shape);
@@ -38,7 +38,7 @@ std::string npy(const RowMajor& rows) {
              static_cast<std::size_t>(rows.size()) * sizeof(double));
 }
 
-/// Returns one row per outline and one truth value per candidate.
+/// Returns one row per outline, with one truth value per candidate.
 std::string hypotheses(const BeliefView& belief) {
   const HypothesisSample& sample = belief.hypotheses();
   const Eigen::Index places = belief.candidates().size();
@@ -53,7 +53,7 @@ std::string hypotheses(const BeliefView& belief) {
   return npy("|b1", fmt::format("{}, {}", sample.count, places), out.data(), out.size());
 }
 
-/// Returns one row per contact: x, y, height, and 1 on an object or 0 on the desk.
+/// Returns one row per contact, with x, y, height, and a label: 1 on an object, 0 on the desk.
 std::string contacts(const BeliefView& belief, double desk) {
   std::vector<TapReading> all;
   for (const TapReading& one : belief.taps().readings) {
@@ -77,7 +77,7 @@ std::string discovery_area(const BeliefView& belief, double) {
   return npy(sample.count > 0 ? sample.expected_discovery_area : Eigen::VectorXd::Zero(belief.candidates().size()));
 }
 
-/// Returns the map of a quantity that is an array.
+/// Returns the array of a quantity that has one value per candidate.
 template <const char* const& kName>
 Map map_of() {
   return {kName, {kName}, values<kName>};

@@ -19,9 +19,9 @@ import sys
 import numpy
 
 PROTOCOL = 1
-SERVED = "PALPATE_PROGRAM" in os.environ  # started by palpate
+SERVED = "PALPATE_PROGRAM" in os.environ  # palpate has started this program
 
-if SERVED:  # stdout is for scores; other output goes to a file of the run
+if SERVED:  # stdout is only for scores, so other output goes to a file of the run
     answers = os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)
 
@@ -79,7 +79,7 @@ def serve(function, reads):
         scores = numpy.asarray(function(Belief(**ask, **arrays)), dtype="<f8")
         if scores.shape != (ask["candidates"],):
             sys.exit(f"{function.__name__} returned an array of shape {scores.shape}, not ({ask['candidates']},)")
-        answer = io.BytesIO()  # NumPy cannot write to a pipe
+        answer = io.BytesIO()  # NumPy cannot write an array to a pipe.
         numpy.save(answer, numpy.ascontiguousarray(scores))
         answers.write(answer.getvalue())
         answers.flush()

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
-// Acquisition by another program, which reads arrays from its stdin and writes the scores to its stdout. The protocol
-// is in framework/docs/strategies.md.
+// Acquisition that another program computes. The program reads arrays from its stdin and writes the scores to its
+// stdout. The protocol is in framework/docs/strategies.md.
 //
-// The program starts with the first score, and only in a run, whose context has a folder. Readers of records start
-// nothing. Every answer except one array of finite scores in time ends the program and the run. Examples are an end, a
-// timeout, another shape, NaN, or an additional byte. A resumed run starts the same program again. So no late answer is
-// taken for another tap.
+// The program starts when the first score is needed. It starts only in a run, because only then the context has a
+// folder. Commands that read records never start it. The only valid answer is one array of finite scores in time. Any
+// other answer ends the program and the run. Examples of such answers are an end of the program, a timeout, another
+// shape, NaN, and an additional byte. A resumed run starts the same program again. A late answer can therefore not be
+// mistaken for the answer of another tap.
 #include "program/maps.hpp"
 #include "programs/child.hpp"
 #include "programs/command.hpp"
@@ -35,12 +36,13 @@ namespace fs = std::filesystem;
 using programs::Child;
 using programs::shown;
 
-/// Version of the protocol, in every request. It increases if the meaning of a request or an answer changes.
+/// Version of the protocol, which is part of every request. It increases if the meaning of a request or an answer
+/// changes.
 constexpr int kProtocol = 1;
 
 constexpr const char* kNoArray = "none";
 
-/// Returns all names in a text with any separators; `none` stands for no name.
+/// Returns all names in a text, separated in any way. The name `none` stands for no name.
 std::vector<std::string> names_in(const std::string& text) {
   constexpr const char* kLetters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_";
   std::vector<std::string> out;
@@ -53,7 +55,7 @@ std::vector<std::string> names_in(const std::string& text) {
   return out;
 }
 
-/// Returns the text in the brackets of each `reads=[...]` in a program's text. The program is not executed.
+/// Returns the text in the brackets of each `reads=[...]` in the source text of a program. The program is not executed.
 std::set<std::string> declarations(const std::string& program) {
   constexpr std::size_t kMost = 1000;
   std::set<std::string> out;
@@ -71,14 +73,15 @@ std::set<std::string> declarations(const std::string& program) {
   return out;
 }
 
-/// Returns the names of all arrays: "uncertainty, label_mean (from above); uncertainty, surface_std (from any side)".
+/// Returns a text with the names of all arrays: "uncertainty, label_mean (from above); uncertainty, surface_std (from
+/// any side)".
 std::string all_names() {
   std::vector<const char*> names;
   for (const program::Map& one : program::maps()) names.push_back(one.name);
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
-/// Returns whether a word of the command is a file in the parent of `folder` but not in `folder`.
+/// Returns whether a word of the command names a file that is in the parent of `folder` but not in `folder`.
 bool lies_above(const std::vector<std::string>& words, const fs::path& folder) {
   std::error_code none;
   return std::any_of(words.begin(), words.end(), [&](const std::string& word) {
@@ -86,8 +89,9 @@ bool lies_above(const std::vector<std::string>& words, const fs::path& folder) {
   });
 }
 
-/// Returns the folder of palpate_acquisition.py, a sibling of this library's folder in a build, a package and an
-/// installation by pip. It must not be the same folder, because Python would import random.so as its module `random`.
+/// Returns the folder of palpate_acquisition.py. In a build, a package and an installation by pip, it is next to the
+/// folder of this library. The folders must differ, because Python would otherwise import random.so as its module
+/// `random`.
 std::string python_folder() {
   Dl_info self{};
   std::error_code none;
@@ -95,7 +99,7 @@ std::string python_folder() {
   return (fs::weakly_canonical(self.dli_fname, none).parent_path().parent_path() / "python").string();
 }
 
-/// Returns PYTHONPATH with the user's entries, followed by the folder of palpate_acquisition.
+/// Returns a value for PYTHONPATH: the entries of the user, followed by the folder of palpate_acquisition.py.
 std::string python_path() {
   const char* const before = std::getenv("PYTHONPATH");
   return std::string("PYTHONPATH=") + (before != nullptr && *before != '\0' ? std::string(before) + ":" : "") +
@@ -130,7 +134,7 @@ struct ProgramOptions : Options {
                              "reads=[...] in the program. With `none`, the program receives no arrays"));
     fields.require(!words || !reads.empty(), "reads",
                    unsaid(words.value_or(std::vector<std::string>()), content.program, declared));
-    // Unknown names are usually in the program, so the error points there.
+    // An unknown name is usually written in the program, so the error then refers to the program.
     const bool by_program = declared.size() == 1 && reads == *declared.begin();
     for (const std::string& name : names_in(reads)) {
       fields.require(program::find_map(name) != nullptr, by_program ? "command" : "reads",
@@ -195,7 +199,7 @@ class ProgramAcquisition final : public Acquisition {
     exchange(fields, arrays, out);
   }
 
-  /// The size of scores before the first tap is unknown.
+  /// The magnitude of the scores before the first tap is unknown.
   double prior_scale() const override { return 0.0; }
 
  private:
@@ -207,7 +211,7 @@ class ProgramAcquisition final : public Acquisition {
     throw Error("", "the program " + what, remedy, Error::Kind::run);
   }
 
-  /// Fails with the end of the program. If NumPy is missing, the remedy is its installation.
+  /// Throws Error about the end of the program. If NumPy is missing, the hint is to install it.
   [[noreturn]] void fail_ended(const std::string& fate) const {
     const std::string file = in_record(".stderr.txt");
     if (fate.find("No module named 'numpy'") != std::string::npos)
@@ -235,7 +239,7 @@ class ProgramAcquisition final : public Acquisition {
         Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds)),
         context_.interrupted};
     std::string bytes;
-    // Output before the request is not an answer to it.
+    // Output that arrives before the request cannot be an answer to it.
     if (child_->read(bytes, 1, {Clock::now(), context_.interrupted}) == ReadResult::complete)
       fail("printed more than its scores", "print other text to stderr");
     check(child_->send(ask(fields, arrays, out.size()), limit), {});
@@ -271,7 +275,8 @@ class ProgramAcquisition final : public Acquisition {
     return out;
   }
 
-  /// Fails unless the expected output has arrived; `bytes` is the output instead.
+  /// Throws Error unless `heard` shows that the expected output has arrived. `bytes` is the output that arrived
+  /// instead.
   void check(ReadResult heard, const std::string& bytes) const {
     switch (heard) {
       case ReadResult::complete:
@@ -289,13 +294,13 @@ class ProgramAcquisition final : public Acquisition {
     }
   }
 
-  /// Returns the path of this program's file in the run's folder. Each program of a sum has its own files.
+  /// Returns the path of a file of this program in the run's folder. Each program in a sum has separate files.
   std::string in_record(const std::string& ending) const {
     constexpr std::size_t kEnough = 8;
     return context_.directory + "/acquisition_" + options_.checksum.substr(0, kEnough) + ending;
   }
 
-  /// Copies the program to the run's folder, because the original may change.
+  /// Copies the program to the run's folder, because the original may change later.
   void keep_program() const {
     constexpr std::size_t kMostBytes = 1 << 20;  // larger than any hand-written program
     const programs::ProgramFingerprint content = programs::content_of(words_, options_.folder);
@@ -310,8 +315,8 @@ class ProgramAcquisition final : public Acquisition {
   std::vector<const program::Map*> maps_;
   std::vector<std::string> words_;
   std::string file_;
-  mutable std::unique_ptr<Child> child_;  ///< cache; score() remains a pure function of the belief
-  mutable bool answered_ = false;         ///< whether any started program has answered
+  mutable std::unique_ptr<Child> child_;  ///< mutable as a cache; score() is still a pure function of the belief
+  mutable bool answered_ = false;         ///< whether any of the started programs has ever answered
 };
 
 PALPATE_PLUGIN(Acquisition, ProgramAcquisition, "program", "scores from a program of your own, in any language")

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
-// Backend that taps through another program. The program reads each request from its stdin and writes the answer to its
-// stdout, one line each.
+// Backend that makes taps through another program. The program reads requests from its stdin and writes answers to its
+// stdout. Each request and each answer is one line.
 //
-// One rule covers all failures. An answer with the number of the tap keeps the program running, even if its fields are
-// rejected. After anything else (timeout, invalid line, additional line, end of the program), the next line could
-// belong to any tap, and the arm may still move. So the tap fails and the program is ended before tap() returns. The
-// next tap starts the program again if taps are repeatable or `restart` is set; otherwise the run ends, so that a
-// person can check the arm. No late answer is taken for another tap, and the record contains every failure.
+// The same rule applies to all failures. If an answer has the number of the tap, the program keeps running, even if
+// other fields of the answer are rejected. Other events are a timeout, an invalid line, an additional line, and an end
+// of the program. After such an event, the next line could belong to any tap, and the arm may still move. The tap then
+// fails, and the program is ended before tap() returns. If taps are repeatable or `restart` is set, the next tap starts
+// the program again. Otherwise the run ends, so that a person can check the arm. A late answer can therefore not be
+// mistaken for the answer of another tap, and the record contains every failure.
 #include "process/protocol.hpp"
 #include "programs/child.hpp"
 #include "programs/command.hpp"
@@ -138,12 +139,13 @@ class Process final : public Backend {
 
   static constexpr const char* kLock = "process.lock";
   static constexpr const char* kInterrupted = "interrupted";
-  static constexpr Eigen::Index kMostLines = 500;  ///< of a question: about 64 KiB, which a pipe takes at once
+  /// largest number of lines per question: about 64 KiB, which a pipe accepts at once
+  static constexpr Eigen::Index kMostLines = 500;
 
-  /// A line that the program printed, or the reason why there is none.
+  /// A line that the program printed, or the reason why there is no line.
   struct Reply {
     std::string line;
-    std::string fault;  ///< empty if there is a line
+    std::string fault;  ///< reason why there is no line; "" if there is one
     Outcome outcome = Outcome::aborted;
     bool ends_run = false;
   };
@@ -162,13 +164,13 @@ class Process final : public Backend {
     return {begin + std::chrono::duration_cast<Clock::duration>(Seconds(seconds)), context_.interrupted};
   }
 
-  /// Returns the path of a file in the record's folder, or an empty string without a record.
+  /// Returns the path of a file in the folder of the record. Returns "" if there is no record.
   std::string recorded(const char* name) const {
     return context_.directory.empty() ? std::string() : context_.directory + "/" + name;
   }
 
-  /// Starts the program. If taps are not repeatable, it first waits until no program of an earlier attempt runs,
-  /// because two must not move one arm. If one still runs at the end of `patience`, child_ stays empty.
+  /// Starts the program. If taps are not repeatable, first waits until no program of an earlier attempt runs, because
+  /// two programs must not move one arm. If such a program still runs at the end of `patience`, child_ stays empty.
   void start(const programs::WaitLimit& patience) const {
     Descriptor lock;
     if (!options_.repeatable && !context_.directory.empty()) {
@@ -193,8 +195,8 @@ class Process final : public Backend {
 
   bool may_restart() const { return options_.repeatable || options_.restart; }
 
-  /// Asks the program, which is started with the first question: the folder of the record does not exist earlier.
-  /// Ends it if it does not answer.
+  /// Sends a question to the program and returns its reply. The first question starts the program, because the folder
+  /// of the record does not exist earlier. If the program does not reply, it is ended.
   Reply ask(const std::string& question) const {
     const auto begin = Clock::now();
     double seconds = options_.deadline;
@@ -209,7 +211,8 @@ class Process final : public Backend {
 
   Reply exchange(const std::string& question, const programs::WaitLimit& patience) const {
     std::string line;
-    // A line before the request is not an answer to it. The arm must not move then.
+    // A line that arrives before the request cannot be an answer to it. In this case, the request is not sent, so that
+    // the arm does not move.
     Child::ReadResult heard = child_->read(line, {Clock::now(), context_.interrupted});
     if (heard == Child::ReadResult::complete) return failed("printed more than its answer: " + programs::shown(line));
     if (heard == Child::ReadResult::late) {
@@ -234,8 +237,9 @@ class Process final : public Backend {
     return {{}, kInterrupted};
   }
 
-  /// Asks which of `count` lines the program reaches, twice if it may be started again: the question moves nothing.
-  /// Returns a truth value per line; empty if it reaches all. Throws Error without a valid answer.
+  /// Asks which of `count` lines the program can reach. If the program may be started again, a failed question is
+  /// repeated once, because it moves nothing. Returns one truth value per line. Returns an empty list if the program
+  /// reaches all lines. Throws Error if there is no valid answer.
   std::vector<bool> ask_reaches(const std::string& question, Eigen::Index count) const {
     Reply reply = ask(question);
     if (!reply.fault.empty() && reply.fault != kInterrupted && may_restart()) reply = ask(question);
@@ -248,7 +252,7 @@ class Process final : public Backend {
     throw Error("", reply.fault, "correct the cause, then run 'palpate resume --retry-failed'", Error::Kind::run);
   }
 
-  /// The most frequent cause of a missing first answer is output buffering in the program.
+  /// If the first answer is missing, the most frequent cause is output buffering in the program.
   std::string not_answered() const {
     return std::string("did not answer in time") +
            (answered_ ? "" : " and has never answered, check that it flushes its output after each line");
@@ -262,10 +266,10 @@ class Process final : public Backend {
   const Context& context_;
   std::vector<std::string> words_;
   std::string file_;
-  // A question about lines may start the program, too.
+  // mutable, because even a question about lines may start the program
   mutable std::unique_ptr<Child> child_;
-  mutable bool answered_ = false;     ///< whether any started program has answered
-  mutable bool reaches_all_ = false;  ///< as the program has answered
+  mutable bool answered_ = false;     ///< whether any of the started programs has ever answered
+  mutable bool reaches_all_ = false;  ///< whether the program has answered that it reaches all lines
 };
 
 PALPATE_PLUGIN(Backend, Process, "process",

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The only file of this plugin that uses the JSON library.
+// This is the only file of the plugin that uses the JSON library.
 #include "process/protocol.hpp"
 
 #include "programs/command.hpp"
@@ -19,7 +19,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 using programs::shown;
 
-/// Writes options as JSON in SI units from their field list, so that new options of the motion need no code here.
+/// Writes options as JSON in SI units. It uses the list of fields, so that new options of a motion need no code here.
 class Written final : public Fields {
  public:
   explicit Written(Json& out) : out_(out) {}
@@ -42,7 +42,7 @@ class Written final : public Fields {
     out_[field.name] = nullptr;
     if (present) section(options, field);
   }
-  // A motion has no lists and no plugins.
+  // The options of a motion contain neither lists nor plugins.
   void reals(double*, std::size_t, const Field&) override {}
   void table(std::vector<double>&, std::size_t, const Field&) override {}
   void sections(const ListAccess&, const Field&) override {}
@@ -61,7 +61,7 @@ class Written final : public Fields {
   Json& out_;
 };
 
-/// Reads the fields of one answer. The first error is kept; values read after it are meaningless.
+/// Reads the fields of one answer. The first error is stored. Values that are read after it are meaningless.
 class Reader {
  public:
   Reader(const Json& answer, const TapLine& line, Protocol protocol) : answer_(answer) {
@@ -73,7 +73,7 @@ class Reader {
     }
   }
 
-  /// Returns false for a missing field and for null.
+  /// Returns whether the field is present and not null.
   bool has(const char* field) const { return answer_.contains(field) && !answer_[field].is_null(); }
 
   double number(const char* field) {
@@ -106,7 +106,7 @@ class Reader {
     return answer_[field].get<bool>();
   }
 
-  /// Returns a text of at least one character for the record.
+  /// Returns the reason of a failed tap for the record. The text has at least one character.
   std::string reason() {
     std::string words = plain_line(text("reason"));
     if (words.find_first_not_of(' ') == std::string::npos) refuse("has no text in 'reason'");
@@ -133,7 +133,8 @@ class Reader {
 };
 
 TapResult read_result(Reader& reader, const TapLine& line, const HeightBounds& bounds) {
-  const Outcome outcome = reader.outcome();  // first: its fault is told before that of the time
+  // The outcome is read first, so that its fault is reported before a fault of the time.
+  const Outcome outcome = reader.outcome();
   TapResult out = tap_without_contact(outcome, reader.number("seconds"));
   if (reader.has("distance")) out.distance = reader.number("distance");
   if (out.outcome == Outcome::contact) {
@@ -158,7 +159,7 @@ Json json_of(const TapLine& line) {
 }
 Json position_of(const TapLine& line) { return {{"x", line.start.x()}, {"y", line.start.y()}}; }
 
-/// Returns the first fields of a request. The name of the record's folder is the run's id.
+/// Returns the first fields of a request. The folder of the record has the run's id as its name.
 Json header(const Context& context, Protocol protocol) {
   Json out{{"palpate", static_cast<int>(protocol)}};
   if (protocol == Protocol::any_line) out["run"] = std::filesystem::path(context.directory).filename().string();

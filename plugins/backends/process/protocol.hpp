@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Requests and answers of the backend `process`: one JSON object per line. The table of fields is in
+// Requests and answers of the backend `process`. Each is one JSON object on one line. The table of fields is in
 // framework/docs/robots.md.
 #pragma once
 
@@ -15,28 +15,31 @@
 
 namespace palpate::process {
 
-/// Version of the protocol, in every request. It increases if the meaning of a request or an answer changes.
+/// Version of the protocol, which is part of every request. It increases if the meaning of a request or an answer
+/// changes.
 enum class Protocol { from_above = 1, any_line = 2 };
 
-/// Returns the request for a tap, with its line end, in SI units. It is complete, so that the program needs no state.
+/// Returns the request for a tap, with its line end, in SI units. The request contains everything about the tap, so the
+/// program needs no state.
 std::string ask_line(const TapRequest& request, const Context& context, tapping::MotionOptions& motion,
                      Protocol protocol);
 
 /// Result of reading a line as the answer to a tap.
 struct Answer {
-  bool in_step = false;   ///< whether the line has the number of the tap
-  bool accepted = false;  ///< whether all fields are valid; if not, `result` is a failed tap
-  /// `ends_run` is set if the program requested it, even in a rejected answer.
+  bool in_step = false;   ///< whether the line has the number of this tap
+  bool accepted = false;  ///< whether all fields are valid; otherwise `result` is a failed tap
+  /// The field `ends_run` is set if the program requested the end of the run, even in a rejected answer.
   TapResult result;
 };
-/// Reads `line` as the answer to `request`. Values that find_fault() reports are rejected.
+/// Reads `line` as the answer to `request`. Answers with values for which find_fault() returns a fault are rejected.
 Answer read_answer(const std::string& line, const TapRequest& request, const HeightBounds& bounds, Protocol protocol);
 
-/// Returns the question which of `lines` from `first` on, at most `count`, can be tapped along, with its line end.
+/// Returns the question which lines can be tapped along, with its line end. It is about at most `count` of `lines`,
+/// beginning with line `first`.
 std::string reaches_line(const Candidates& lines, Eigen::Index first, Eigen::Index count, const Context& context);
 
-/// Reads `line` as the answer to that question: one truth value per line, empty if the program reaches all. Returns
-/// nullopt for any other answer.
+/// Reads `line` as the answer to the question of reaches_line(). Returns one truth value per line, or an empty list if
+/// the program reaches all lines. Returns nullopt for any other answer.
 std::optional<std::vector<bool>> read_reaches(const std::string& line, Eigen::Index count);
 
 }  // namespace palpate::process

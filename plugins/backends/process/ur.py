@@ -14,9 +14,9 @@ import sys
 from arm_lock import Held, hold_arm
 from ur_moves import ARRIVED, RETRY, Arm, Asks, Failed, Fault, Over, check, distance, length
 
-MARGIN = 0.02  # m, margin around the area in which the tip may be when a tap begins
+MARGIN = 0.02  # metres; a tap may begin only if the tip is at most this far outside the area
 UPRIGHT = math.cos(math.radians(5))
-NO_TOOL = 0.001  # m: a shorter TCP offset means that no tool is set
+NO_TOOL = 0.001  # metres; a shorter TCP offset shows that no tool is set
 
 
 class Onset:
@@ -52,7 +52,7 @@ class Tapper:
         if arm.trouble:
             raise arm.trouble
         arm.look()
-        arm.look()  # the first state may be older than a cable fault since the last tap
+        arm.look()  # The first state may be older than a cable fault that occurred since the last tap.
         begin, outcome = arm.stamp, None
         self.check_begin(ask)
         here = arm.pose()
@@ -99,7 +99,7 @@ class Tapper:
         """Descends to a contact or to `floor`. Returns height and force of the contact, or None."""
         arm = self.arm
         arm.zero(motion["tare"])
-        # moveUntilContact() is not used, because it has neither a floor nor a threshold in newtons.
+        # moveUntilContact() is not used, because it has no lower limit of the height and no threshold in newtons.
         onset = Onset(motion["threshold"])
         contact = arm.follow(floor, motion["speed"], until, onset)
         return contact and (onset.height(*contact), abs(contact[1][2]))
@@ -162,10 +162,10 @@ def connect(host, asks, force_limit):
     except ImportError as error:
         raise Fault(f"{error}: install ur_rtde for {sys.executable}, or name a Python that has it in backend.command "
                     f"(UR.md, step 1), {RETRY}") from None
-    except RuntimeError as error:  # ur_rtde raises it for every error of its own
+    except RuntimeError as error:  # ur_rtde raises RuntimeError for each of its own errors
         raise Fault(f"no connection to {host}: {error}; {RETRY}") from None
     arm = Arm(control, receive, asks, force_limit)
-    arm.lock = lock  # held as long as this object exists
+    arm.lock = lock  # the lock is held as long as this object exists
     return arm
 
 
@@ -212,7 +212,7 @@ def main():
     parser.add_argument("--rotation", type=float, default=0.0, help="of the area about the vertical, degrees")
     parser.add_argument("--force-limit", type=float, default=30.0, help="newtons at which the arm stops on any way")
     arguments = parser.parse_args()
-    # ur_rtde prints on stdout, which must contain only answers.
+    # ur_rtde prints on stdout, which must contain only answers. The answers therefore get a copy of stdout.
     answers = os.fdopen(os.dup(1), "w")
     os.dup2(2, 1)
     serve(arguments, Asks(), answers)

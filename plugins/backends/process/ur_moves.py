@@ -9,15 +9,15 @@ import signal
 import sys
 import time
 
-ACCELERATION = 0.5  # m/s^2, of every move
-DECELERATION = 2.0  # m/s^2, of every stop: from 20 cm/s in 0.1 s, well within the watchdog's time
-WATCHDOG = 5.0  # Hz: the controller stops the arm after 0.2 s without a message
-FRESH = 0.2  # s without a new state of the robot, after which the connection counts as lost
-READINGS = 3  # consecutive new readings that make a contact; one may be a spike
-ARRIVED = 0.0005  # m from the target
-WINDOW = 0.1  # s over which the speed of the tip is averaged, because single samples are noisy
-AT_REST = 0.001  # m/s
-STOPPING = 1.0  # s, time limit of a stop
+ACCELERATION = 0.5  # m/s^2; used in every move
+DECELERATION = 2.0  # m/s^2; used in every stop: 20 cm/s become 0 in 0.1 s, well within the time of the watchdog
+WATCHDOG = 5.0  # Hz; the controller stops the arm after 0.2 s without a message
+FRESH = 0.2  # seconds; the connection counts as lost after this time without a new state of the robot
+READINGS = 3  # number of consecutive new readings that make a contact, because a single reading may be a spike
+ARRIVED = 0.0005  # metres; the tip has arrived if it is this near to the target
+WINDOW = 0.1  # seconds; the speed of the tip is an average over this time, because single samples are noisy
+AT_REST = 0.001  # m/s; below this speed, the arm is at rest
+STOPPING = 1.0  # seconds; time limit of a stop
 
 RETRY = "then run 'palpate resume --retry-failed'"
 
@@ -69,12 +69,12 @@ class Arm:
 
     def __init__(self, control, receive, asks, force_limit):
         self.control, self.receive, self.asks = control, receive, asks
-        self.force_limit = force_limit  # N, limit of the force in any motion
+        self.force_limit = force_limit  # newtons; limit of the force in any motion
         self.zero_force = [0.0] * 3
         self.stamp = None
-        self.poses = collections.deque()  # (stamp, pose) of the last WINDOW
-        self.lost = False  # the robot may not receive anything, so no command is sent
-        self.trouble = None  # error between two taps
+        self.poses = collections.deque()  # pairs (stamp, pose) of the last WINDOW seconds
+        self.lost = False  # whether messages may no longer reach the robot; then no command is sent
+        self.trouble = None  # error that occurred between two taps
         self.approached = False  # whether the first approach is complete
 
     def look(self):
@@ -169,7 +169,7 @@ class Arm:
         way = distance(self.pose(), target)
         until = until or self.stamp + 5.0 + 3.0 * way / speed
         limit = self.force_limit + length(self.force())
-        # Set before every move: ur_rtde reconnects automatically, and the watchdog is then off.
+        # The watchdog is set before every move, because it is off after ur_rtde has reconnected automatically.
         if not self.control.setWatchdog(WATCHDOG):
             check(self.receive)
             raise Fault(f"the robot rejects the watchdog: check the pendant's log, {RETRY}")
@@ -236,9 +236,9 @@ def check(receive):
         raise Fault(f"emergency stop: release the button, switch the arm on, bring the tip above the area, {RETRY}")
     if receive.isProtectiveStopped():
         raise Fault(f"protective stop: free the arm if it presses, confirm on the pendant, {RETRY}")
-    if receive.getSafetyMode() not in (1, 2):  # normal, reduced
+    if receive.getSafetyMode() not in (1, 2):  # safety modes 1 (normal) and 2 (reduced)
         raise Fault(f"safety mode {receive.getSafetyMode()}, not normal: clear it on the pendant, {RETRY}")
-    if receive.getRobotMode() != 7:  # running
+    if receive.getRobotMode() != 7:  # robot mode 7 (running)
         raise Fault(f"robot mode {receive.getRobotMode()}, not running: switch on and release the brakes, {RETRY}")
 
 

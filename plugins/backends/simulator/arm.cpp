@@ -11,18 +11,19 @@ namespace palpate::backends {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
-/// Stiffness in N/m where the scene has no stiffness effect. Object and arm are then nearly rigid: 10 N need 0.1 mm of
-/// set-point.
+/// Stiffness in N/m for scenes without the effect `stiffness`. Object and arm are then nearly rigid: for a force of 10
+/// N, the set-point is 0.1 mm below the contact.
 constexpr double kRigidArm = 1e5;
-/// Force of a false contact, in multiples of the threshold.
+/// Force of a false contact, as a multiple of the threshold.
 constexpr double kJerk = 2.0;
 
 constexpr int kRings = 8;
 constexpr int kSpokes = 24;
-constexpr double kFinest = 1e-8;  ///< metres, smallest stride of the search
+constexpr double kFinest = 1e-8;  ///< metres; smallest step of the search
 
 /// Returns the maximum of height(dx, dy) - rise(distance) over a disc, at least `least`. `rise` is the height of the
-/// tool's surface above its lowest point at a distance from its axis; it never decreases with the distance.
+/// tool's surface above its lowest point, as a function of the distance from the tool's axis. It must not decrease with
+/// the distance.
 template <class Height, class Rise>
 double maximum_over_disc(Height height, double radius, double least, Rise rise) {
   double best = least;
@@ -39,7 +40,7 @@ double maximum_over_disc(Height height, double radius, double least, Rise rise) 
     return true;
   };
   for (int ring = 1; ring <= kRings; ++ring) {
-    // Slightly inside, so that rounding does not exclude the rim
+    // The points are slightly inside the disc, because rounding could otherwise exclude those on its rim.
     const double distance = radius * ring / kRings * (1.0 - 1e-12);
     for (int spoke = 0; spoke < kSpokes; ++spoke) {
       const double angle = 2.0 * kPi * spoke / kSpokes;
@@ -59,8 +60,8 @@ double maximum_over_disc(Height height, double radius, double least, Rise rise) 
   return best;
 }
 
-/// Returns the height of the tool's lowest point when any part of it touches. height_at(dx, dy) is the height of the
-/// scene at a distance from the tool's axis, at most `highest`.
+/// Returns the height of the tool's lowest point when any part of the tool touches. height_at(dx, dy) is the height of
+/// the scene at a displacement from the tool's axis. It is at most `highest`.
 template <class Height>
 double touch_height(const Effects& effects, double highest, const Height& height_at) {
   double height = height_at(0.0, 0.0);
@@ -70,19 +71,19 @@ double touch_height(const Effects& effects, double highest, const Height& height
       return radius - std::sqrt(std::max(0.0, radius * radius - distance * distance));
     });
   }
-  // The comparison with `highest` avoids most searches, because objects are rarely taller than the shaft's end.
+  // The comparison with `highest` avoids most searches, because objects rarely reach the lower end of the shaft.
   if (effects.shaft && highest - effects.shaft->length > height)
     height = maximum_over_disc(height_at, effects.shaft->radius, height, [&](double) { return effects.shaft->length; });
   return height;
 }
 
-/// Returns the distance along `line` at which any part of the tool touches. `free` returns the free length of a
-/// parallel line.
+/// Returns the distance along `line` at which any part of the tool touches. `free` returns the free length of a line
+/// that is parallel to `line`.
 template <class Free>
 double touch_distance(const Effects& effects, const Line& line, const Free& free) {
   const Eigen::Vector3d one = line.direction.unitOrthogonal();
   const Eigen::Vector3d other = line.direction.cross(one);
-  // Distances are negated, because a near obstacle corresponds to a high surface.
+  // The distances are negated, because a near obstacle corresponds to a high surface.
   return -touch_height(effects, 0.0, [&](double dx, double dy) {
     return -free({line.origin + dx * one + dy * other, line.direction});
   });
@@ -90,8 +91,9 @@ double touch_distance(const Effects& effects, const Line& line, const Free& free
 
 }  // namespace
 
-// The deviation d = position - set-point satisfies d'' + 2 zeta omega d' + omega^2 d = 0. On a ramp of speed v the arm
-// trails by 2 zeta / omega * v = delay * v. A step is overshot by exp(-pi zeta / sqrt(1 - zeta^2)) times its height.
+// The deviation d = position - set-point obeys d'' + 2 zeta omega d' + omega^2 d = 0. If the set-point moves with the
+// speed v, the arm lags behind it by 2 zeta / omega * v = delay * v. After a step of the set-point, the arm overshoots
+// by exp(-pi zeta / sqrt(1 - zeta^2)) times the size of the step.
 Arm::Arm(const std::optional<JointLag>& lag, double period, double position)
     : lags_(lag && lag->delay > 0.0), position_(position) {
   if (!lags_) return;
@@ -136,7 +138,7 @@ double desk_along(const Scene& scene, const Effects& effects, const Line& line) 
 double foreign_object_height(const ForeignObjects& effect, std::uint64_t seed, double x, double y) {
   const auto column = static_cast<std::int64_t>(std::floor(x / effect.size));
   const auto row = static_cast<std::int64_t>(std::floor(y / effect.size));
-  constexpr std::int64_t kColumns = 1 << 20;  // upper limit of the number of columns in an area
+  constexpr std::int64_t kColumns = 1 << 20;  // more than the number of columns in any area
   Random random(seed, "simulator/outlier", static_cast<std::uint64_t>(row * kColumns + column));
   return random.uniform() < effect.probability ? effect.height * random.uniform() : 0.0;
 }
@@ -158,7 +160,7 @@ ContactModel::ContactModel(const Effects& effects, double surface, bool desk, do
   if (effects.latency) late_ = effects.latency->deviation * std::abs(normal_()) / tapping::GuardedTap::kPeriod;
 }
 
-/// Returns the force that is measured now: the force `late_` periods ago, interpolated linearly.
+/// Returns the measured force, which is the force `late_` periods ago. It is interpolated linearly.
 double ContactModel::delayed(double force) {
   if (late_ <= 0.0) return force;
   forces_.push_back(force);

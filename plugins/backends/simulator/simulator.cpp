@@ -67,7 +67,7 @@ void Simulator::reaches(const Candidates& lines, BoolOut out) const {
   for (Eigen::Index i = 0; i < lines.size(); ++i) out(i) = reaches(lines.line(i));
 }
 
-/// Returns whether the tool starts above the desk, with its tip and with all of its shaft.
+/// Returns whether the tip and the whole shaft are above the desk when the tool starts.
 bool Simulator::reaches(const TapLine& line) const {
   const Effects& effects = scene_.effects();
   const double above = line.start.z() - scene_.desk();
@@ -85,8 +85,8 @@ tapping::HeightResult Simulator::ideal_tap(const Descending& tap, double surface
   return {Outcome::contact, surface, tap.motion.threshold, down + up, {}};
 }
 
-/// Taps along an approach with the motion of a vertical tap; the remaining length of the approach takes the place of
-/// the height. Pose errors and height offset move the true line.
+/// Taps along an approach from any side, with the motion of a vertical tap. The remaining length of the approach takes
+/// the place of the height. Pose errors and height offset move the true line.
 TapResult Simulator::tap_along(const TapRequest& request) const {
   const tapping::MotionOptions& motion = options_.motion.of_request(request);
   const Effects& effects = scene_.effects();
@@ -98,8 +98,8 @@ TapResult Simulator::tap_along(const TapRequest& request) const {
   const std::unique_ptr<const Scene> pushed = scene_.after(request.number - 1);
   const Scene& scene = pushed ? *pushed : scene_;
   double along = contact_along(scene, effects, true_line);
-  // A round tip may touch the desk with its side, while its lowest point is higher.
-  constexpr double kAsExact = 1e-6;  // m, more than the accuracy of both searches
+  // A round tip may touch the desk with its side, so the results of both searches are compared.
+  constexpr double kAsExact = 1e-6;  // metres; more than the accuracy of both searches
   const bool desk = effects.stiffness && along > desk_along(scene, effects, true_line) - kAsExact;
   const Eigen::Vector3d met = true_line.origin + std::min(along, length) * true_line.direction;
   if (effects.foreign_objects)
@@ -110,7 +110,7 @@ TapResult Simulator::tap_along(const TapRequest& request) const {
   tapping::HeightResult end =
       moves_ ? simulated_tap(request.number, way, left, desk) : ideal_tap(way, std::max(0.0, left));
   if (!moves_ && !met_any && end.outcome == Outcome::contact) end.outcome = Outcome::no_contact;
-  // Without a contact the arm ends at the full length, whatever the scene has there.
+  // Without a contact, the arm ends at the full length, even if an object is there.
   const double distance = end.outcome == Outcome::contact ? length - end.height : length;
   end.height = line.start.z() + distance * line.direction.z();
   end.seconds += tapping::travel_seconds(motion, request);
@@ -162,7 +162,8 @@ tapping::HeightResult Simulator::simulated_tap(int number, const Descending& tap
   return contact;
 }
 
-/// Waits for the tap's duration times `pace` in short sleeps. Returns whether the user has let it.
+/// Waits for the duration of the tap multiplied by `pace`, in short sleeps. Returns false if the user has interrupted
+/// the wait.
 bool Simulator::wait(double tap_seconds) const {
   using Clock = std::chrono::steady_clock;
   const double seconds = tap_seconds * options_.pace;

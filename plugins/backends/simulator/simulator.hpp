@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// A simulated arm over the scene of the config. Without effects the result of a tap is computed in closed form. Effects
-// on tool, position or object change the touched surface. Effects on motion or force have the tap simulated period by
-// period.
+// A simulated arm that taps the scene of the config. Without effects, the result of a tap has a closed form. Effects on
+// the tool, the position or the objects change the touched surface. With effects on the motion or the force, the tap is
+// simulated period by period.
 #pragma once
 
 #include "tapping/height_result.hpp"
@@ -27,7 +27,7 @@ class Simulator final : public Backend {
  public:
   using Options = SimulatorOptions;
 
-  /// Throws Error if an object is as high as the height of travel.
+  /// Throws Error if an object reaches the height of travel.
   Simulator(const Options& options, const Context& context);
 
   TapResult tap(const TapRequest& request) override;
@@ -41,14 +41,14 @@ class Simulator final : public Backend {
   }
 
  private:
-  /// A motion and its planned descent.
+  /// A motion and the descent that it plans.
   struct Descending {
     const tapping::MotionOptions& motion;
     tapping::Descent descent;
   };
   bool reaches(const TapLine& line) const;
   bool beyond_reach(double x, double y) const;
-  /// Returns the offset of the true position from the requested one, metres, without the height offset.
+  /// Returns the difference between the true and the requested position, metres. It does not include the height offset.
   Eigen::Vector3d pose_error(const TapRequest& request) const;
   tapping::HeightResult ideal_tap(const Descending& tap, double surface) const;
   TapResult imperfect_tap(const TapRequest& request, const Descending& tap, const Scene& scene) const;
@@ -60,9 +60,9 @@ class Simulator final : public Backend {
   SimulatorOptions options_;
   const Context& context_;
   const Scene& scene_;
-  std::unique_ptr<const Scene> pushed_;  ///< scene at the last tap, if taps push objects
+  std::unique_ptr<const Scene> pushed_;  ///< scene after the last tap, if taps push objects
   bool perfect_;                         ///< whether the scene has no effects
-  bool moves_;                           ///< whether an effect changes motion or measured force
+  bool moves_;                           ///< whether an effect changes the motion or the measured force
 };
 
 }  // namespace palpate::backends

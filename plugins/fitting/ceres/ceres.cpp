@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Fits hyperparameters to the taps. The objective is the marginal likelihood or the leave-one-out predictive density,
-// times priors for surfaces in an area of this size (Rasmussen and Williams 2006, chapter 5). A coarse search is
-// followed by quasi-Newton ascent. This is the only file that includes Ceres.
+// multiplied by priors for surfaces in an area of this size (Rasmussen and Williams 2006, chapter 5). A coarse search
+// finds a start, and quasi-Newton ascent finds the optimum from there. This is the only file that includes Ceres.
 #include "options.hpp"
 
 #include <palpate/fitting.hpp>
@@ -26,14 +26,16 @@ namespace palpate::fitting {
 
 namespace {
 
-/// Number of points above which a part of them determines the region of the optimum, and all of them only the optimum.
+/// With more points than kPart, a subset of them determines the region of the optimum. All points then determine the
+/// optimum within this region.
 constexpr Eigen::Index kPart = 96;
-/// Largest slope at the end of an ascent, per point and in units of the curvature. The objective is then within about
-/// 1e-8 of its maximum.
+/// Largest slope at the end of an ascent, per point and in coordinates in which the curvature is 1. The objective is
+/// then within about 1e-8 of its maximum.
 constexpr double kFine = 1e-4;
 
-/// Growth of the number of taps that triggers a new search. Before, a fit ascends from the last optimum. Without priors
-/// every fit searches: a likelihood has several optima, and one tap may change which is the best.
+/// Factor by which the number of taps must grow before a fit searches again. Until then, each fit ascends from the last
+/// optimum. Without priors, every fit searches, because a likelihood has several optima and one tap may change which of
+/// them is the best.
 constexpr double kGrowth = 1.1;
 
 /// Result of an ascent.
@@ -42,18 +44,18 @@ struct AscentResult {
   double value = 0.0;
   bool valid = false;      ///< whether value and gradient were always finite
   bool converged = false;  ///< whether the gradient also vanished
-  std::string reason;      ///< reason for the end of the ascent
-  Eigen::MatrixXd metric;  ///< metric of this ascent
+  std::string reason;      ///< reason why the ascent ended
+  Eigen::MatrixXd metric;  ///< metric that this ascent used
 };
 
-/// State that a fit leaves for the next one (FitProblem::memory): number of taps at the last search, and metric.
+/// Data that a fit stores for the next one (FitProblem::memory): number of taps at the last search, and metric.
 struct Memory {
   double searched = 0.0;
   Eigen::MatrixXd metric;
 
   static Memory of(const std::vector<double>& numbers, Eigen::Index size) {
     if (static_cast<Eigen::Index>(numbers.size()) != 1 + size * size)
-      return {};  // empty, or for another number of outputs
+      return {};  // The memory is empty, or is for another number of outputs.
     return {numbers.front(), Eigen::Map<const Eigen::MatrixXd>(numbers.data() + 1, size, size)};
   }
   void keep(std::vector<double>& numbers) const {
@@ -62,7 +64,7 @@ struct Memory {
   }
 };
 
-/// Negative objective in the coordinates of a metric, as a function for Ceres.
+/// The negative objective as a function for Ceres, in the coordinates of a metric.
 class NegativeObjective final : public ceres::FirstOrderFunction {
  public:
   NegativeObjective(Objective& objective, const Eigen::VectorXd& start, const Eigen::MatrixXd& metric)
@@ -95,9 +97,9 @@ Eigen::VectorXd within_limits(Eigen::VectorXd x, const std::vector<HyperPrior>& 
   return x;
 }
 
-/// Ascends from `start` by BFGS with a Wolfe line search (ceres::GradientProblem), until all entries of the gradient in
-/// the coordinates of `metric` are at most `tolerance`. x = start + metric u, so a metric near the square root of the
-/// inverse curvature saves steps. Without knowledge it is the identity.
+/// Ascends from `start` by BFGS with a Wolfe line search (ceres::GradientProblem). Ends when all entries of the
+/// gradient in the coordinates u are at most `tolerance`, where x = start + metric u. A metric near the square root of
+/// the inverse curvature therefore saves steps. If nothing is known about the curvature, the metric is the identity.
 AscentResult ascend(Objective& objective, const Eigen::VectorXd& start, const Eigen::MatrixXd& metric,
                     double tolerance) {
   ceres::GradientProblemSolver::Options options;
@@ -112,18 +114,18 @@ AscentResult ascend(Objective& objective, const Eigen::VectorXd& start, const Ei
   ceres::GradientProblemSolver::Summary summary;
   ceres::Solve(options, problem, u.data(), &summary);
   const Eigen::VectorXd x = start + metric * u;
-  // An ascent that fails on its way still has a valid result, unless its start failed.
+  // If an ascent fails on its way, its last point is still a valid result, unless the start was invalid.
   const bool valid = !summary.iterations.empty() && std::isfinite(summary.final_cost) && x.allFinite();
   const bool converged = valid && summary.termination_type == ceres::CONVERGENCE;
   return {x,     -summary.final_cost, valid, converged, summary.message.substr(0, summary.message.find_first_of(".\n")),
           metric};
 }
 
-/// Returns a metric from the curvature at `result`, by differences of gradients.
+/// Returns a metric from the curvature at `result`, which is computed by differences of gradients.
 Eigen::MatrixXd metric_at(Objective& objective, const Eigen::VectorXd& result) {
-  // In logarithms: large compared with rounding, small compared with changes of the curvature
+  // Step in the logarithms. It is large compared with rounding errors and small compared with changes of the curvature.
   constexpr double kStep = 1e-3;
-  constexpr double kFlattest = 1e-3;  // smaller curvatures are replaced by this
+  constexpr double kFlattest = 1e-3;  // curvatures below this value are replaced by it
   const Eigen::Index size = result.size();
   Eigen::MatrixXd curvature(size, size);
   Eigen::VectorXd here(size);
@@ -142,12 +144,14 @@ Eigen::MatrixXd metric_at(Objective& objective, const Eigen::VectorXd& result) {
   return solver.eigenvectors() * scale.asDiagonal() * solver.eigenvectors().transpose();
 }
 
-/// Returns a deterministic start: the best of `now` and a grid of length scales and noises, each with its best signals.
-/// A likelihood has a wide flat region of pure noise, which no ascent leaves.
+/// Returns a start for the ascent without random numbers: the best of `now` and a grid of length scales and noises,
+/// each with its best signals. A likelihood has a wide, flat region in which all data is noise, and an ascent never
+/// leaves this region.
 Eigen::VectorXd look_around(Objective& objective, const Model& model, const Eigen::VectorXd& now,
                             const std::vector<HyperPrior>& expectations) {
   constexpr int kLengths = 4;
-  constexpr std::array<double, 2> kNoises{1e-3, 1e-1};  // squared noise ratios of a clean and of a noisy surface
+  // squared noise ratios of a surface with little noise and of one with much noise
+  constexpr std::array<double, 2> kNoises{1e-3, 1e-1};
   const std::vector<KernelParameter> parameters = model.kernel.parameters();
   const auto count = static_cast<Eigen::Index>(parameters.size());
   const double extent = (model.points.colwise().maxCoeff() - model.points.colwise().minCoeff()).maxCoeff();
@@ -189,7 +193,7 @@ Eigen::VectorXd random_start(const std::vector<HyperPrior>& expectations, Random
 
 bool better(const AscentResult& a, const AscentResult& b) { return a.valid && (!b.valid || a.value > b.value); }
 
-/// Describes the results of all starts.
+/// Returns a text about the results of all starts.
 std::string describe(const std::vector<AscentResult>& results, const Model& model) {
   std::string values;
   for (const AscentResult& result : results) {
@@ -248,9 +252,10 @@ class Ceres final : public Fitting {
 
  private:
   std::vector<HyperPrior> expectations(const Model& model) const {
-    // A scene has desk and objects, with steps that no stationary kernel follows. Its taps look smoother than the rest
-    // of the surface. So with few taps the likelihood alone favours too long length scales and too small signals, with
-    // too small uncertainty. Results with and without priors are in framework/docs/runs.md.
+    // A scene has steps at the edges of its objects, and no stationary kernel can follow these. The surface looks
+    // smoother at the taps than it is elsewhere. With few taps, the likelihood alone therefore favours length scales
+    // that are too long and signals that are too small, and the uncertainty becomes too small. framework/docs/runs.md
+    // compares results with and without priors.
     const auto log_normal = [](double median, double spread, double factor) {
       return HyperPrior{math::log(median), spread, math::log(median / factor), math::log(median * factor)};
     };
@@ -259,7 +264,8 @@ class Ceres final : public Fitting {
       out.push_back(one.unit == Unit::metre ? log_normal(side_ / 12.0, 0.4, 1e4) : log_normal(1.0, 1.0, 1e3));
     }
     // Squares of noise and signal have twice the spread of the standard deviations.
-    const double noise = model.mean_ratio > 0.0 ? 0.05 : 0.3;  // with an unknown level there is no desk, so no step
+    // an unknown mean means that there is no desk and so no step
+    const double noise = model.mean_ratio > 0.0 ? 0.05 : 0.3;
     out.push_back(log_normal(noise * noise, 0.8, 1e8));
     for (Eigen::Index i = 0; i < model.outputs(); ++i) out.push_back(log_normal(1.0, 0.6, 1e8));
     for (Eigen::Index i = 0; model.fit_means && i < model.outputs(); ++i) out.push_back({0.0, 1.0, -1e3, 1e3});
@@ -270,8 +276,9 @@ class Ceres final : public Fitting {
     return {model, options_.objective, expected, options_.priors == Options::Priors::touch};
   }
 
-  /// Returns the optimum by an ascent from the present values `now` if one suffices, else by a search. `known`: whether
-  /// the objective is finite at `now`. Updates `memory`, which may be null, and reason and evaluations of `summary`.
+  /// Returns the optimum. If possible, finds it by an ascent from the present values `now`, otherwise by a search.
+  /// `known`: whether the objective is finite at `now`. Updates `memory`, which may be null, and the reason and the
+  /// number of evaluations in `summary`.
   AscentResult optimum(const Model& model, Objective& objective, const std::vector<HyperPrior>& expected,
                        const Eigen::VectorXd& now, bool known, std::vector<double>* memory, Random& random,
                        FitSummary& summary) const {
@@ -291,15 +298,15 @@ class Ceres final : public Fitting {
           best.valid ? best.reason + "; from " + describe(results, model) : "no ascent reached a finite value";
     }
     if (memory != nullptr && best.valid) {
-      // After a search with few points, the metric is that of its start, which may be far from the optimum.
+      // After a search with few points, the metric is the metric of the start, which may be far from the optimum.
       if (searched && model.size() <= kPart) best.metric = metric_at(objective, best.x);
       Memory{searched ? taps : last.searched, best.metric}.keep(*memory);
     }
     return best;
   }
 
-  /// Returns the optima of all ascents, the best first. `objective` belongs to `model`. Evaluations of objectives for a
-  /// part of the points are added to `evaluations`.
+  /// Returns the optima of all ascents, with the best one first. `objective` must belong to `model`. Evaluations of the
+  /// objectives of subsets are added to `evaluations`.
   std::vector<AscentResult> search(const Model& model, Objective& objective, const std::vector<HyperPrior>& expected,
                                    const Eigen::VectorXd& now, Random& random, int& evaluations) const {
     std::vector<AscentResult> results;
@@ -310,7 +317,8 @@ class Ceres final : public Fitting {
         results.push_back(ascend(objective, start, metric_at(objective, start), kFine));
       }
     } else {
-      // A part of the points determines region and curvature; all points decide between the optima of the part.
+      // A subset of the points determines region and curvature. Then all points decide which optimum of the subset is
+      // the best.
       const Model part = part_of(model, kPart / 2);
       Objective rough = objective_of(part, expected);
       results = search(part, rough, expected, now, random, evaluations);

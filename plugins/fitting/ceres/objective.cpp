@@ -13,9 +13,10 @@ namespace palpate::fitting {
 namespace {
 
 constexpr double kLogTwoPi = 1.83787706640934548356;
-/// Steepness of the smooth limits: the squared distance beyond a limit, in e-folds, costs this much per point.
+/// Steepness of the smooth limits. Beyond a limit, the objective decreases per point by kWall times the squared
+/// distance in e-folds.
 constexpr double kWall = 1.0;
-/// Relative deviation of targets below which they count as equal.
+/// Targets count as equal if their relative deviation is smaller than this.
 constexpr double kRounding = 1e-9;
 
 Eigen::VectorXd exponentials(const double* logs, Eigen::Index count) {
@@ -182,8 +183,9 @@ void Objective::fill(bool slopes) {
 bool Objective::decompose(double noise) {
   noise_ = noise;
   const Eigen::Index n = model_.size();
-  // Smooth lower limit of the noise: the first jitter of RegularFactor, always added to avoid steps in the objective.
-  // It is too small to affect the gradient. Matrices that remain singular are rejected, and the search turns back.
+  // Smooth lower limit of the noise. It equals the first jitter of RegularFactor and is always added, because the
+  // objective would otherwise have a step. It is too small to affect the gradient noticeably. If a matrix is still
+  // singular, it is rejected, and the search turns back.
   const double floor = kFirstJitter * static_cast<double>(n) * kEpsilon * matrix_(0, 0);
   for (Eigen::Index i = 0; i < n; ++i) own_(i) = matrix_(i, i) += noise + floor;
   if (!factorise(matrix_, reciprocals_)) return false;
@@ -203,7 +205,7 @@ void Objective::solve(const Eigen::MatrixXd& targets) {
   for (Eigen::Index i = 0; i < targets.cols(); ++i) solve_lower(matrix_, solved_.col(i));
   squares_ = solved_.colwise().squaredNorm();
   if (!(model_.mean_ratio > 0.0)) return;
-  // Inverse of K + r^2 1 1^T by the formulas of Sherman, Morrison and Woodbury.
+  // The inverse of K + r^2 1 1^T is computed by the formulas of Sherman, Morrison and Woodbury.
   ones_ = Eigen::VectorXd::Zero(solved_.rows());
   ones_.head(n).setOnes();
   solve_lower(matrix_, ones_);
@@ -218,7 +220,7 @@ void Objective::solve(const Eigen::MatrixXd& targets) {
   }
 }
 
-/// Replaces L by K^-1, and applies L^-T to the vectors to which L^-1 was applied.
+/// Replaces L by K^-1. Applies L^-T to the vectors to which L^-1 was applied.
 void Objective::invert() {
   invert_transposed(matrix_, reciprocals_, upper_);
   for (Eigen::Index i = 0; i < solved_.cols(); ++i) multiply_upper(upper_, solved_.col(i));
@@ -262,12 +264,12 @@ double Objective::leave_one_out(double* gradient) {
   Eigen::MatrixXd inverse = matrix_.mirrored();
   const auto ones = ones_.head(ones_.size() > 0 ? n : 0);
   if (ones.size() > 0) inverse.noalias() -= ones * ones.transpose();
-  const Eigen::ArrayXd own = inverse.diagonal();  // 1 / variance of each prediction
+  const Eigen::ArrayXd own = inverse.diagonal();  // 1 / variance of each leave-one-out prediction
   double sum = 0.5 * static_cast<double>(m) * (own.unaryExpr(&math::log) - kLogTwoPi).sum();
   Eigen::ArrayXd weight = Eigen::ArrayXd::Zero(n);
   Eigen::MatrixXd adjoint = Eigen::MatrixXd::Zero(n, n);
   for (Eigen::Index i = 0; i < m; ++i) {
-    const Eigen::ArrayXd ratio = solved_.col(i).head(n).array() / own;  // target minus prediction
+    const Eigen::ArrayXd ratio = solved_.col(i).head(n).array() / own;  // target minus leave-one-out prediction
     const double squares = (solved_.col(i).head(n).array() * ratio).sum();
     sum -= 0.5 * squares;
     if (gradient == nullptr) continue;
@@ -294,7 +296,7 @@ void Objective::contract(double* gradient) const {
     const double* const adjoint = matrix_.at(s, 0)->numbers;
     for (Eigen::Index p = 0; p < parameters_; ++p) {
       const double* const slopes = slopes_[static_cast<std::size_t>(slopes_of(s) + p * columns(s))].numbers;
-      // A diagonal tile is complete; tiles left of it also represent the symmetric tiles on the right.
+      // A diagonal tile has all its entries. A tile to the left of it also stands for the symmetric tile to the right.
       gradient[p] +=
           2.0 * product(adjoint, slopes, 8 * s) + product(adjoint + 64 * s, slopes + 64 * s, columns(s) - 8 * s);
     }

@@ -15,11 +15,11 @@ namespace {
 using Eigen::Index;
 using namespace math::HWY_NAMESPACE;  // NOLINT(google-build-using-namespace)
 
-/// Number of strips in a panel. Eight columns of a few strips fit into the first-level cache.
+/// Number of strips in a panel. Eight columns of kPanel strips fit into the first-level cache.
 constexpr Index kPanel = 8;
 
-// Registers of rows, and columns, whose products are summed together. The kPacks * kColumns sums fill the register
-// file.
+// Number of vector registers for rows, and number of columns, whose products are summed in one loop. The kPacks *
+// kColumns sums fill the vector registers of the processor.
 #if HWY_TARGET == HWY_AVX3
 constexpr Index kPacks = 3;
 constexpr Index kColumns = 8;
@@ -31,11 +31,12 @@ constexpr Index kPacks = 2;
 constexpr Index kColumns = 4;
 #endif
 
-/// Registers per line, and number of strips whose tiles are multiplied together.
+/// Number of vector registers per line, and number of strips whose tiles are multiplied in one loop.
 constexpr Index kPacksOfLine = 8 / kLanes;
 constexpr Index kTogether = kPacks > kPacksOfLine ? kPacks / kPacksOfLine : 1;
 
-/// Computes out_p += or -= a_p b^T for kCount registers of rows. `a` and `b` have `depth` columns, `out` has eight.
+/// Computes out_p += or -= a_p b^T for kCount vector registers of rows. `a` and `b` have `depth` columns. `out` has
+/// eight columns.
 template <Index kCount, bool kPlus>
 HWY_INLINE void multiply(const double* const* a, const double* b, Index depth, double* const* out) {
   for (Index first = 0; first < 8; first += kColumns) {
@@ -63,8 +64,8 @@ HWY_INLINE void multiply(const double* const* a, const double* b, Index depth, d
   }
 }
 
-/// Computes the tiles (s, j) of C for strips s in [first, last): += or -= A_s B_j^T, over the columns [from, to) of A
-/// and B.
+/// Adds (or subtracts) the products A_s B_j^T to the tiles (s, j) of C, for strips s in [first, last). A product is
+/// over the columns [from, to) of A and B.
 template <bool kPlus>
 HWY_INLINE void update(StripMatrix& c, const StripMatrix& a, const StripMatrix& b, Index first, Index last, Index j,
                        Index from, Index to) {
@@ -88,7 +89,7 @@ HWY_INLINE void update(StripMatrix& c, const StripMatrix& a, const StripMatrix& 
 HWY_INLINE bool factorise_tile(double* tile, double* reciprocals) {
   for (Index c = 0; c < 8; ++c) {
     double* const own = tile + 8 * c;
-    // Rows above the diagonal are computed, too, at no cost.
+    // The rows above the diagonal are also computed, because this needs no additional time.
     for (Index d = 0; d < c; ++d) {
       const Vector share = all(tile[8 * d + c]);
 #pragma GCC unroll 8
@@ -105,7 +106,7 @@ HWY_INLINE bool factorise_tile(double* tile, double* reciprocals) {
   return true;
 }
 
-/// Computes X L^-T in place, for a tile X and the triangle L of a diagonal tile.
+/// Computes X L^-T in place, where X is a tile and L is the triangle of a diagonal tile.
 HWY_INLINE void solve_tile(double* x, const double* lower, const double* reciprocals) {
 #pragma GCC unroll 8
   for (Index row = 0; row < 8; row += kLanes) {
@@ -123,8 +124,8 @@ HWY_INLINE void solve_tile(double* x, const double* lower, const double* recipro
   }
 }
 
-// The factorisation proceeds by panels. Contributions of earlier panels are complete when a panel starts. So within a
-// panel each column of tiles depends only on columns of the same panel.
+// The matrix is factorised panel by panel. The contributions of all earlier panels are complete when a panel starts.
+// Within a panel, each column of tiles therefore depends only on columns of this panel.
 bool factorise(StripMatrix& matrix, double* reciprocals) {
   const Index strips = matrix.strips();
   for (Index panel = 0; panel < strips; panel += kPanel) {
@@ -145,7 +146,7 @@ bool factorise(StripMatrix& matrix, double* reciprocals) {
   return true;
 }
 
-// L^-T results from applying the factorisation of K to rows of the identity below K.
+// L^-T is computed by applying the factorisation of K to rows of the identity that are added below K.
 void invert_transposed(const StripMatrix& factor, const double* reciprocals, StripMatrix& out) {
   const Index strips = factor.strips();
   for (Index panel = 0; panel < strips; panel += kPanel) {
@@ -169,18 +170,18 @@ void square_upper(const StripMatrix& upper, StripMatrix& out) {
     const Index end = std::min(panel + kPanel, strips);
     for (Index s = 0; s < end; s += kTogether) {
       const Index last = std::min(s + kTogether, end);
-      const Index from = panel > s ? panel : s;  // columns further left are 0
+      const Index from = panel > s ? panel : s;  // Columns to the left of this one are 0.
       for (Index j = 0; j < last; ++j) update<true>(out, upper, upper, j > s ? j : s, last, j, 8 * from, 8 * end);
     }
   }
 }
 
-/// Adds columns [from, to) of strip `s` times b[from], ... to the line `out`.
+/// Adds the product of columns [from, to) of strip `s` with b[from], b[from + 1], ... to the line `out`.
 void times(const StripMatrix& matrix, Index s, Index from, Index to, const double* b, double* out) {
   for (Index p = 0; p < kPacksOfLine; ++p) {
     const auto column = [&](Index k) { return at(matrix.at(s, k)->numbers + p * kLanes); };
     Vector sum = at(out + p * kLanes);
-    Vector odd = hn::Zero(kReals);  // two sums halve the wait for additions
+    Vector odd = hn::Zero(kReals);  // With two sums, additions wait half as long for each other.
     Index k = from;
     for (; k + 1 < to; k += 2) {
       sum = hn::MulAdd(all(b[k]), column(k), sum);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Stub of the fitting for builds without Ceres.
+// Stub of the fitting for builds without Ceres. Creating it throws an error that names the missing packages.
 #include "stub.hpp"
 
 #include "fitting/ceres/options.hpp"

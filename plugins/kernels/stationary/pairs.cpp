@@ -13,8 +13,8 @@ namespace {
 
 namespace hn = math::HWY_NAMESPACE::hn;
 
-/// Computes pairs of the positions [from, to) with one of the others, in vectors of `reals`. Returns the first position
-/// that is left.
+/// Computes the pairs of the positions [from, to) with one of the other positions, in vectors of type `reals`. Returns
+/// the first position that was not computed, because fewer positions were left than a vector has elements.
 template <class Reals>
 HWY_INLINE std::ptrdiff_t squared_distances_by_lanes(Reals reals, const Pairs& pairs, std::ptrdiff_t other,
                                                      std::ptrdiff_t from, std::ptrdiff_t to, double most, double scale,

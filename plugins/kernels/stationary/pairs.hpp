@@ -6,7 +6,8 @@
 
 namespace palpate::kernels {
 
-/// All pairs of n positions with some other positions, ordered by the latter. The arrays are coordinates per axis.
+/// All pairs of n positions with other positions, ordered by the other position. The arrays are coordinates, one array
+/// per axis.
 struct Pairs {
   std::ptrdiff_t n;
   int axes;  ///< number of axes, 1 or 2

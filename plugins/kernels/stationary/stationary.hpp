@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Common part of the stationary kernels: length scales, and covariance as a function of the scaled distance.
+// Common part of the stationary kernels: length scales, and the covariance as a function of the scaled distance.
 #pragma once
 
 #include "kernels/stationary/pairs.hpp"
@@ -34,10 +34,10 @@ struct StationaryOptions : Options {
   }
 };
 
-/// Consecutive numbers of a matrix, at most kBlock.
+/// View of consecutive numbers of a matrix, at most kBlock of them.
 using Numbers = Eigen::Map<Eigen::ArrayXd>;
 constexpr Eigen::Index kBlock = 256;
-/// Temporary numbers on the stack, at most kBlock.
+/// Temporary numbers on the stack, at most kBlock of them.
 using Block = Eigen::Array<double, Eigen::Dynamic, 1, 0, kBlock, 1>;
 
 /// Replaces each number x by e^x.
@@ -121,7 +121,7 @@ class Stationary final : public Kernel {
   }
 
   void derivatives(const PointsView& a, const PointsView& b, MatrixOut value, MatrixOut slopes) const override {
-    // From the derivatives by one parameter to those by the next
+    // Distance in memory between the derivatives by one parameter and those by the next parameter.
     const Eigen::Index next = b.rows() * slopes.outerStride();
     const Pairs both = of_both_axes(a, b);
     for_blocks(a.rows(), b.rows(), {&value, &slopes}, [&](Eigen::Index first, Eigen::Index count) {
@@ -147,8 +147,8 @@ class Stationary final : public Kernel {
  private:
   Eigen::Index axes() const { return per_axis_ ? 2 : 1; }
 
-  /// Calls use(first, count) for blocks of the pairs of n positions with m others, in column order. The numbers of a
-  /// block are contiguous in all of `outs`, starting at place(out, first).
+  /// Calls use(first, count) for blocks of the pairs of n positions with m other positions, in column order. The
+  /// numbers of a block are contiguous in all of `outs`. They begin at place(out, first).
   template <class Use>
   static void for_blocks(Eigen::Index n, Eigen::Index m, std::initializer_list<const MatrixOut*> outs, const Use& use) {
     const bool gapless =
@@ -187,10 +187,10 @@ class Stationary final : public Kernel {
   bool per_axis_;
 };
 
-/// Base of shapes without parameters of their own.
+/// Base class of shapes that have no parameters except the length scales.
 struct PlainShape {
   using Options = StationaryOptions;
-  /// Exponentials of this value and of its root underflow to 0, also after multiplication by it.
+  /// For z of this size, exp(-z) and exp(-sqrt(z)) underflow to 0, even after multiplication by z.
   static constexpr double kFarthest = 1e8;
   static constexpr bool kSeparable = false;
   static constexpr bool kOwn = false;

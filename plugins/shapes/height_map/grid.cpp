@@ -40,7 +40,7 @@ void check_size(const std::string& file, std::uint64_t rows, std::uint64_t colum
   if (rows < 2 || columns < 2 || rows > most || columns > most / rows) refuse_size(file, rows, columns);
 }
 
-/// Returns `text` without surrounding blanks.
+/// Returns `text` without blanks at its beginning and end.
 std::string_view stripped(std::string_view text) {
   constexpr const char* kBlanks = " \t\r\n";
   const std::size_t begin = text.find_first_not_of(kBlanks);
@@ -92,7 +92,7 @@ constexpr std::array<std::pair<const char*, BinaryNumber>, 10> kScalars{{{"f4", 
                                                                          {"i8", binary_number<std::int64_t>()},
                                                                          {"u8", binary_number<std::uint64_t>()}}};
 
-/// Returns null for an unsupported type.
+/// Returns the number type with this name. Returns null if it is not supported.
 const BinaryNumber* scalar_named(const std::string& type) {
   if (type.empty() || std::string_view("<>|=").find(type.front()) == std::string_view::npos) return nullptr;
   const auto* const found = std::find_if(kScalars.begin(), kScalars.end(),
@@ -127,7 +127,7 @@ Grid from_npy(const std::string& bytes, const std::string& file) {
 
 #ifdef PALPATE_PNG
 
-/// Input of libpng, and its error message.
+/// The bytes that libpng reads, and its error message.
 struct Source {
   std::string_view rest;
   std::string reason;
@@ -145,8 +145,8 @@ void note(png_structp png, png_const_charp reason) {
   png_longjmp(png, 1);
 }
 
-/// Decodes into `out`. Returns false after an error of libpng, which leaves the function by longjmp. So no local
-/// variable may need a destructor.
+/// Decodes into `out`. After an error, libpng leaves the function by longjmp, and the function returns false. No local
+/// variable may therefore need a destructor.
 bool decode(png_structp png, png_infop info, Source& source, Grid& out, std::vector<png_byte>& row, bool& is_grey,
             const std::string& file) {
   if (setjmp(png_jmpbuf(png)) != 0) return false;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Reader for heights on a grid: a CSV table, a NumPy array or an image.
+// Reader for heights on a grid, from a CSV table, a NumPy array or an image.
 #pragma once
 
 #include <Eigen/Core>
@@ -20,8 +20,8 @@ using Grid = Eigen::Array<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajo
 ///   versions 1 to 3);
 /// - .png: grey levels of 8 or 16 bits, unscaled, 0 to 255 or 65535.
 ///
-/// Throws Error with the file as its place: another format, damaged file, rows of different lengths, fewer than 2 x 2
-/// or more than kMostNodes values, a negative or infinite value, or no value above 0.
+/// Throws Error with the file as its place for another format, a damaged file, and rows of different lengths. Also
+/// throws Error for fewer than 2 x 2 or more than kMostNodes values, a negative or infinite value, or no value above 0.
 Grid read_grid(const std::string& bytes, const std::string& file);
 
 }  // namespace palpate::shapes

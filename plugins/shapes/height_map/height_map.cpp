@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Object of heights on a grid, for example from a depth camera, a profilometer or a terrain model. Each cell has two
-// flat triangles, so intersections with lines are exact up to rounding.
+// An object that is given by heights on a grid, for example from a depth camera, a profilometer or a terrain model. The
+// surface of each cell consists of two flat triangles, so intersections with lines are exact up to rounding.
 #include "grid.hpp"
 #include "shapes/mesh/options.hpp"
 #include "shapes/solid.hpp"
@@ -45,8 +45,8 @@ class HeightMap final : public Shape {
   using Options = HeightMapOptions;
   HeightMap(const Options& options, const Context&) : spacing_(options.spacing) {
     const Grid all = read_grid(read_file(options.file, options.checksum), options.file);
-    // Rows and columns of zeros around the object belong to the desk, except for the nearest ones, to which the object
-    // slopes.
+    // Rows and columns of zeros around the object are removed, because they are desk. The nearest ones stay, because
+    // the object slopes down to them.
     const auto [first_row, rows] = range_of(all.rowwise().maxCoeff() > 0.0);
     const auto [first_column, columns] = range_of((all.colwise().maxCoeff() > 0.0).transpose());
     heights_ = options.unit * all.block(first_row, first_column, rows, columns).colwise().reverse();
@@ -85,8 +85,8 @@ class HeightMap final : public Shape {
   }
 
  private:
-  /// Returns a range as first index and length: from one before the first true entry to one after the last, if these
-  /// exist.
+  /// Returns a range as first index and length. It begins one entry before the first true entry and ends one entry
+  /// after the last, if these entries exist.
   template <class Holds>
   static std::pair<Index, Index> range_of(const Holds& holds) {
     Index first = holds.size();
@@ -104,8 +104,8 @@ class HeightMap final : public Shape {
   double x_of(Index column) const { return spacing_ * static_cast<double>(column) - half_length_; }
   double y_of(Index row) const { return spacing_ * static_cast<double>(row) - half_width_; }
 
-  /// Returns the height at a position within the rectangle. It is linear in each of the two triangles of a cell, which
-  /// the diagonal from its upper left to its lower right corner separates.
+  /// Returns the height at a position within the rectangle. It is linear in each of the two triangles of a cell. The
+  /// diagonal between them goes from the cell's upper left corner to the lower right one.
   double height(double x, double y) const {
     const auto cell = [&](double place, Index count) {
       return std::clamp<Index>(static_cast<Index>(std::floor(place)), 0, count - 2);
@@ -126,7 +126,8 @@ class HeightMap final : public Shape {
     return corner + (1.0 - u) * (left - corner) + (1.0 - v) * (right - corner);
   }
 
-  /// Returns the part of the line above the rectangle, between the desk and the highest node; nullopt if there is none.
+  /// Returns the part of the line that is above the rectangle, between the desk and the highest node. Returns nullopt
+  /// if there is none.
   std::optional<Stretch> clipped(const Line& line) const {
     Interval out;
     out.clip(line.origin.x(), line.direction.x(), -half_length_, half_length_);
@@ -135,8 +136,8 @@ class HeightMap final : public Shape {
     return out.empty() ? std::nullopt : std::optional(Stretch{out.begin, out.end});
   }
 
-  /// Returns the positions within `part` where the line changes from one triangle to the next, in order, with both
-  /// ends.
+  /// Returns the positions within `part` where the line goes from one triangle to the next one, in order. Both ends of
+  /// `part` are included.
   std::vector<double> crossings(const Line& line, const Stretch& part) const {
     std::vector<double> out{part.begin, part.end};
     const auto add = [&](double place, double slope) {
@@ -154,13 +155,13 @@ class HeightMap final : public Shape {
     const double along_y = line.direction.y() / spacing_;
     add(x, along_x);
     add(y, along_y);
-    add(x + y, along_x + along_y);  // diagonals
+    add(x + y, along_x + along_y);  // crossings with the diagonals
     std::sort(out.begin(), out.end());
     return out;
   }
 
-  /// Calls visit(stretch) for each part of the line inside the solid, in order, until it returns false. The depth of
-  /// the line below the surface is linear between two crossings.
+  /// Calls visit(stretch) for each part of the line that is inside the solid, in order, until `visit` returns false.
+  /// The depth of the line below the surface is linear between two crossings.
   template <class Visit>
   void visit(const Line& line, const Visit& visit) const {
     const std::optional<Stretch> part = clipped(line);
@@ -178,7 +179,8 @@ class HeightMap final : public Shape {
     for (const double at : crossings(line, *part)) {
       const Place now = look(at);
       if (before) {
-        // Both crossings bound one triangle. If it is on the desk there is no object, despite rounding errors.
+        // Both crossings are on the border of the same triangle. If this triangle is on the desk, there is no object,
+        // even if rounding errors suggest one.
         const bool has_object = height_at((before->at + now.at) / 2) > 0.0;
         const bool was_in = before->depth >= 0.0;
         const bool is_in = now.depth >= 0.0;
@@ -202,7 +204,7 @@ class HeightMap final : public Shape {
   }
 
   double spacing_;
-  Grid heights_;  ///< metres; rows along x, from the near side to the far side
+  Grid heights_;  ///< metres; each row is along x, and the first row is at the near side
   double highest_ = 0.0, half_length_ = 0.0, half_width_ = 0.0;
 };
 

@@ -41,7 +41,7 @@ constexpr const char* kExportAgain = "export it again";
       "reduce their number");
 }
 
-/// Hides all other files from assimp, such as the materials of an OBJ.
+/// File system for assimp in which no other file exists, such as the materials of an OBJ.
 class NoOtherFiles final : public Assimp::IOSystem {
  public:
   bool Exists(const char*) const override { return false; }
@@ -50,7 +50,7 @@ class NoOtherFiles final : public Assimp::IOSystem {
   void Close(Assimp::IOStream*) override {}
 };
 
-/// Returns "stl", "obj" or "ply", from the extension.
+/// Returns "stl", "obj" or "ply", depending on the extension.
 std::string format_of(const std::string& file) {
   std::string ending = std::filesystem::path(file).extension().string();
   std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return std::tolower(c); });
@@ -61,8 +61,9 @@ std::string format_of(const std::string& file) {
               "export it as .stl, .obj or .ply");
 }
 
-/// Checks that an STL is complete, by its length or its last word, because assimp reads incomplete files without an
-/// error. Removes bytes after a binary STL, and converts text to lower case, as assimp expects.
+/// Checks by its length or its last word that an STL is complete, because assimp reads incomplete files without an
+/// error. Removes bytes after the end of a binary STL. Converts an STL in text form to lower case, as assimp expects
+/// it.
 void make_stl_plain(std::string& bytes, const std::string& file) {
   constexpr std::size_t kHeader = 84;
   constexpr std::size_t kTriangle = 50;
@@ -84,7 +85,7 @@ void make_stl_plain(std::string& bytes, const std::string& file) {
   }
 }
 
-/// Returns the number of line ends in `text`, which may be CR, LF or CRLF.
+/// Returns the number of line ends in `text`. A line end is CR, LF or CRLF.
 std::size_t line_ends(std::string_view text) {
   std::size_t out = 0;
   for (std::size_t i = 0; i < text.size(); ++i) {
@@ -93,8 +94,8 @@ std::size_t line_ends(std::string_view text) {
   return out;
 }
 
-/// Checks that a PLY has as many rows as its header states, because assimp repeats the last row or fails otherwise.
-/// Like assimp it accepts CR, LF and CRLF as line ends.
+/// Checks that a PLY has as many rows as its header states. For a wrong number, assimp repeats the last row or fails.
+/// Like assimp, the function accepts CR, LF and CRLF as line ends.
 void check_ply(const std::string& bytes, const std::string& file) {
   const std::string_view last = "end_header";
   std::size_t header = bytes.find(last, 1);
@@ -114,13 +115,13 @@ void check_ply(const std::string& bytes, const std::string& file) {
     words >> word >> name >> count;
     if (word == "format") text = name == "ascii";
     if (word != "element") continue;
-    // Nine digits suffice: the largest accepted file has fewer than 10^9 bytes.
+    // A valid count has at most nine digits, because the largest accepted file has fewer than 10^9 bytes.
     if (count.empty() || count.size() > 9 || count.find_first_not_of("0123456789") != std::string::npos)
       throw Error(file, "its header does not give the number of rows of '" + name + "'", kExportAgain);
     rows += std::stoul(count);
   }
   const std::string_view body = std::string_view(bytes).substr(header + last.size());
-  // The last row may lack its line end, but the header's line has one. A binary row has at least one byte.
+  // The last row may lack its line end, but the last line of the header has one. A binary row has at least one byte.
   const std::size_t there =
       text ? line_ends(body) - (body.empty() || (body.back() != '\n' && body.back() != '\r') ? 0 : 1) : body.size();
   if (there < rows) throw Error(file, "is cut short: its header announces more rows than there are", kExportAgain);
@@ -128,7 +129,7 @@ void check_ply(const std::string& bytes, const std::string& file) {
 
 Soup triangles_by_assimp(const std::string& bytes, const std::string& file, const std::string& format) {
   Assimp::Importer importer;
-  importer.SetIOHandler(new NoOtherFiles);  // owned by the importer
+  importer.SetIOHandler(new NoOtherFiles);  // The importer takes ownership of the object.
   const aiScene* scene = importer.ReadFileFromMemory(bytes.data(), bytes.size(), aiProcess_Triangulate, format.c_str());
   if (scene == nullptr) {
     std::string reason = importer.GetErrorString();
@@ -140,7 +141,7 @@ Soup triangles_by_assimp(const std::string& bytes, const std::string& file, cons
     const aiMesh& mesh = *scene->mMeshes[m];
     for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
       const aiFace& face = mesh.mFaces[f];
-      if (face.mNumIndices != 3) continue;  // points and lines have no surface
+      if (face.mNumIndices != 3) continue;  // Points and lines have no surface.
       if (out.size() == 3 * kMostTriangles) refuse_number(file, kMostTriangles + 1);
       for (unsigned i = 0; i < 3; ++i) {
         if (face.mIndices[i] >= mesh.mNumVertices)
@@ -167,10 +168,10 @@ void limit(int resource, rlim_t most) {
   setrlimit(resource, &both);
 }
 
-/// Limits the memory to far more than assimp needs for any valid file of `bytes` bytes. `out_of_memory` is called when
-/// the limit is reached.
+/// Limits the memory of this process. The limit is much larger than the memory that assimp needs for any valid file of
+/// `bytes` bytes. `out_of_memory` is called when the limit is reached.
 void limit_memory([[maybe_unused]] std::size_t bytes, [[maybe_unused]] void (*out_of_memory)()) {
-#ifndef PALPATE_SANITIZED  // a sanitizer reserves terabytes of addresses for its own memory
+#ifndef PALPATE_SANITIZED  // A sanitizer reserves terabytes of addresses for its own memory.
   std::size_t pages = 0;
   std::istringstream(read_bounded("/proc/self/statm", kMostSystemBytes, Origin::user).text) >> pages;
   limit(RLIMIT_AS, pages * static_cast<std::size_t>(sysconf(_SC_PAGESIZE)) + 512'000'000 + 64 * bytes);
@@ -180,15 +181,16 @@ void limit_memory([[maybe_unused]] std::size_t bytes, [[maybe_unused]] void (*ou
 
 const ChildProcess::Say* say_in_child = nullptr;
 
-/// Runs in the child process. Writes 'T' and the triangles, or 'E', reason and hint. Returns the exit status.
+/// The work of the child process. Writes 'T' and the triangles after success, else 'E', the reason and a hint. Returns
+/// the exit status.
 int answer(const ChildProcess::Say& say, const std::string& bytes, const std::string& file, const std::string& format) {
   limit(RLIMIT_CORE, 0);
-  // Valid meshes of 13 and 55 MB take 0.3 and 0.5 s; a broken file of 102 bytes kept assimp busy without end.
+  // Valid meshes of 13 and 55 MB take 0.3 and 0.5 s. A broken file of only 102 bytes made assimp run endlessly.
   const rlim_t seconds = 1 + bytes.size() / 250'000;
   limit(RLIMIT_CPU, seconds);
-  alarm(static_cast<unsigned>(12 * seconds));  // for waits without CPU time
+  alarm(static_cast<unsigned>(12 * seconds));  // limit of the real time, for waits that use no CPU time
   const int nowhere = open("/dev/null", O_WRONLY | O_CLOEXEC);
-  if (nowhere >= 0) dup2(nowhere, STDERR_FILENO);  // assertions of assimp would print a second line
+  if (nowhere >= 0) dup2(nowhere, STDERR_FILENO);  // failed assertions of assimp would print a second line
   say_in_child = &say;
   limit_memory(bytes.size(), [] {
     (*say_in_child)("Eneeds more memory than any valid file of its size\nexport it again");
@@ -212,13 +214,13 @@ Soup import_triangles(std::string bytes, const std::string& file) {
   if (format == "ply") bytes = plain_ply(std::move(bytes), {"vertex", "face", "tristrips"});
   if (format == "ply") check_ply(bytes, file);
   if (format == "obj") drop_byte_order_mark(bytes);
-  // On some broken files assimp 5.2 crashes, aborts or never ends, so it runs in a child process.
+  // On some broken files, assimp 5.2 crashes, aborts or runs endlessly. It therefore runs in a child process.
   const std::unique_ptr<ChildProcess> reader =
       ChildProcess::fork([&](const ChildProcess::Say& say) { return answer(say, bytes, file, format); });
   if (!reader)
     throw Error(file, std::string("cannot start a child process to read it: ") + std::strerror(errno), "",
                 Error::Kind::run);
-  reader->wait();  // ends, because the child limits its own time
+  reader->wait();  // the wait ends, because the child limits its own time
   const std::string& said = reader->said();
   const int status = reader->status();
   if (status != 0 || said.empty()) {

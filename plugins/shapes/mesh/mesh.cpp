@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Objects from a file of triangles. The file is read twice: for its checksum when the config is resolved, and when the
-// scene is built. Embree finds the first intersection with a line; no other file uses it.
+// Objects from files of triangles. The file is read twice: first for its checksum when the config is resolved, then
+// when the scene is built. Embree finds the first intersection with a line. No other file uses Embree.
 #include "triangles.hpp"
 
 #include <palpate/error.hpp>
@@ -62,18 +62,18 @@ class Mesh final : public Shape {
     check_embree();
   }
 
-  /// The triangle is found in single precision relative to the centre of the mesh, within 1e-6 of its size. The
-  /// position on it is computed in double precision.
+  /// Embree finds the triangle in single precision, relative to the centre of the mesh. Its error is at most 1e-6 of
+  /// the mesh size. The position on the triangle is then computed in double precision.
   double first_intersection(const Line& line) const override {
     const RTCRayHit ray = cast(line, 0.0F);
     return ray.hit.geomID == RTC_INVALID_GEOMETRY_ID ? kInfinity : hit_at(line, ray.hit.primID).at;
   }
 
-  /// Parts of a mesh may overlap, so a point is inside where more surfaces were entered than left. If the triangles are
-  /// not oriented consistently, entries and exits alternate.
+  /// Parts of a mesh may overlap. A point is therefore inside if the line has entered more surfaces than it has left.
+  /// If the triangles are not oriented consistently, entries and exits are taken in turn.
   std::vector<Stretch> intervals(const Line& line) const override {
     std::call_once(orientation_checked_, [this] { oriented_ = is_oriented(); });
-    // Adjacent triangles are hit within rounding of each other; a step passes over all of them.
+    // The hits of adjacent triangles differ only by rounding. A single step passes over all of them.
     const auto step = static_cast<float>(4e-6 * radius_);
     std::vector<Hit> hits;
     int balance = 0;
@@ -88,7 +88,7 @@ class Mesh final : public Shape {
     int depth = 0;
     for (const Hit& one : hits) {
       const bool was = depth != 0;
-      // The balance is not 0 if a step passed over one side of a wedge.
+      // The balance is not 0 if the step passed over one side of a wedge.
       depth = oriented_ && balance == 0 ? depth + (one.enters ? 1 : -1) : 1 - depth;
       if (!was) out.push_back({one.at, one.at});
       if (depth == 0) out.back().end = one.at;
@@ -97,7 +97,7 @@ class Mesh final : public Shape {
     return out;
   }
 
-  /// Boxes around groups of points avoid the test of most points.
+  /// Bounding boxes of groups of points make it unnecessary to test most points.
   double support(const Vector3d& direction) const override {
     const std::vector<Vector3d>& points = mesh_.points;
     double best = direction.dot(points.front());
@@ -115,7 +115,7 @@ class Mesh final : public Shape {
   static constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
   /// Returns the first hit of a ray. The ray starts where the line enters a sphere around the mesh, which keeps its
-  /// numbers small, and ignores hits closer than `from`.
+  /// coordinates small. Hits closer than `from` are ignored.
   RTCRayHit cast(const Line& line, float from) const {
     const double begin = (centre_ - line.origin).dot(line.direction) - radius_;
     const Eigen::Vector3f origin = (line.origin + begin * line.direction - centre_).cast<float>();
@@ -134,7 +134,8 @@ class Mesh final : public Shape {
     return ray;
   }
 
-  /// Returns whether each edge occurs equally often in both directions.
+  /// Returns whether each edge occurs equally often in both directions, so that the triangles are oriented
+  /// consistently.
   bool is_oriented() const {
     std::vector<std::uint64_t> forth, back;
     for (const auto& triangle : mesh_.corners) {
@@ -152,7 +153,7 @@ class Mesh final : public Shape {
 
   struct Hit {
     double at;
-    bool enters;  ///< for corners in counter-clockwise order, seen from outside
+    bool enters;  ///< whether the line enters the solid, if corners are counter-clockwise as seen from outside
   };
   Hit hit_at(const Line& line, unsigned number) const {
     const auto& triangle = mesh_.corners[number];
@@ -160,7 +161,8 @@ class Mesh final : public Shape {
     const Vector3d b = mesh_.points[triangle[1]] - line.origin;
     const Vector3d c = mesh_.points[triangle[2]] - line.origin;
     const Vector3d normal = (b - a).cross(c - a);
-    // A triangle parallel to the line has no unique intersection; the result is clamped to its ends.
+    // A triangle parallel to the line has no unique intersection. The result is then clamped to the ends of the
+    // triangle.
     const auto [least, most] = std::minmax({a.dot(line.direction), b.dot(line.direction), c.dot(line.direction)});
     const double slope = normal.dot(line.direction);
     return {slope == 0.0 ? least : std::clamp(normal.dot(a) / slope, least, most), slope < 0.0};
@@ -176,7 +178,7 @@ class Mesh final : public Shape {
   static constexpr std::size_t kFew = 64;
 
   Triangles mesh_;
-  std::vector<Box> boxes_;  ///< around each group of kFew consecutive points
+  std::vector<Box> boxes_;  ///< bounding box of each group of kFew consecutive points
   Vector3d centre_;
   double radius_;  ///< radius of a sphere around all points
   mutable std::once_flag orientation_checked_;

@@ -25,8 +25,8 @@ std::string checksum_of(const std::string& bytes) {
   return fmt::format("{:016x}{:016x}", hash.high64, hash.low64);
 }
 
-/// Returns the path of a file. Shipped configs name meshes as configs/... . Without a checkout, these are beside the
-/// installed configs, relative to this library: <prefix>/lib/palpate/shape/mesh.so.
+/// Returns the path of a file. Shipped configs name meshes as configs/... . Without a checkout, these files are next to
+/// the installed configs. The path is then relative to this library: <prefix>/lib/palpate/shape/mesh.so.
 fs::path place_of(const std::string& file) {
   std::error_code none;
   Dl_info self{};
@@ -59,7 +59,7 @@ std::string read_file(const std::string& file, const std::string& checksum) {
   std::string bytes;
   try {
     bytes = bytes_of(file);
-  } catch (const Error& trouble) {  // whose place is the file; the field is added here
+  } catch (const Error& trouble) {  // The place of the error is the file, and the field is added here.
     throw Error("file", trouble.what(), {}, trouble.kind());
   }
   const std::string found = checksum_of(bytes);
@@ -68,7 +68,8 @@ std::string read_file(const std::string& file, const std::string& checksum) {
 }
 
 void list_checksum(const std::string& file, std::string& checksum, Fields& fields) {
-  // The checksum makes the id of a run depend on the content, and prevents a resume with another file.
+  // With the checksum, the id of a run depends on the content of the file, and a run cannot be resumed with another
+  // file.
   std::string trouble;
   try {
     if (!file.empty()) checksum = checksum_of(bytes_of(file));
@@ -76,7 +77,7 @@ void list_checksum(const std::string& file, std::string& checksum, Fields& field
     trouble = error.what();
   }
   fields.text(checksum, Field("checksum", "checksum of the file content; not given: computed from the file"));
-  // A record has the checksum, so the file is not needed to read it.
+  // A record has the checksum, so it is readable without the file.
   fields.require(trouble.empty() || !checksum.empty(), "file", trouble);
 }
 

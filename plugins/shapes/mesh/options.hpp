@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Options of shapes from a file, and reading of the file.
+// Options of shapes that are read from a file, and functions that read the file.
 #pragma once
 
 #include <palpate/options.hpp>
@@ -20,13 +20,14 @@ struct MeshOptions : Options {
   void list(Fields& fields) override;
 };
 
-/// Lists `checksum` of the content of `file`, so that the id of a run depends on it. `file` must be listed before. If
-/// the config has no checksum, it is computed; an unreadable file is then an error at the field `file`. If the config
-/// has one, the file is needed only when the shape is created, so records are read without it.
+/// Lists the option `checksum` of the content of `file`. The id of a run therefore depends on this content. `file` must
+/// be listed before. If the config has no checksum, the checksum is computed. An unreadable file then causes an error
+/// at the field `file`. If the config has a checksum, the file is read only when the shape is created. Records are
+/// therefore readable without the file.
 void list_checksum(const std::string& file, std::string& checksum, Fields& fields);
 
-/// Returns the content of the file. Throws Error with place "file" if it is missing, unreadable, not a regular file,
-/// empty, or larger than 500 MB. Throws Error with place "checksum" if the content has another checksum.
+/// Returns the content of the file. Throws Error with place "file" if the file is missing, unreadable, not regular,
+/// empty, or larger than 500 MB. Throws Error with place "checksum" if the content has a different checksum.
 std::string read_file(const std::string& file, const std::string& checksum);
 
 }  // namespace palpate::shapes

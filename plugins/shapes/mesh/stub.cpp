@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Stub of the shape for builds without Embree or assimp.
+// Stub of the shape for builds without Embree or assimp. Creating it throws an error that names the missing packages.
 #include "stub.hpp"
 
 #include "shapes/mesh/options.hpp"

@@ -19,7 +19,7 @@ using Eigen::Vector3d;
 
 std::string text(double value) { return fmt::format("{:.4g}", value); }
 
-/// Formats a point: "(1, 2, 3) mm".
+/// Returns a point as text: "(1, 2, 3) mm".
 std::string place(const Vector3d& point) {
   return fmt::format("({:.4g}, {:.4g}, {:.4g}) mm", 1e3 * point.x(), 1e3 * point.y(), 1e3 * point.z());
 }
@@ -51,7 +51,8 @@ void check_areas(const Triangles& mesh, const std::string& file) {
     const Vector3d ab = mesh.points[b] - mesh.points[a];
     const Vector3d ac = mesh.points[c] - mesh.points[a];
     const double longest = std::max({ab.squaredNorm(), ac.squaredNorm(), (ac - ab).squaredNorm()});
-    // Single precision may move a point off a line by its rounding, so smaller heights count as 0.
+    // Single precision may move a point off a line by a rounding error. Smaller heights of a triangle therefore count
+    // as 0.
     if (ab.cross(ac).norm() <= 0x1p-23 * longest && degenerate++ == 0) first = i;
   }
   if (degenerate == 0) return;
@@ -97,7 +98,8 @@ void check_closed(const Triangles& mesh, const std::string& file) {
   }
 }
 
-/// Points keep the order of the file, in which neighbours are close; mesh.cpp relies on it for its boxes.
+/// The points keep the order of the file, in which neighbours are close to each other. The boxes in mesh.cpp rely on
+/// this.
 Triangles join(const Soup& soup, const MeshOptions& options) {
   const bool y_is_up = options.up == MeshOptions::Up::y;
   Eigen::AlignedBox3d box;
@@ -120,7 +122,7 @@ Triangles join(const Soup& soup, const MeshOptions& options) {
   for (std::size_t i = 0; i < soup.size(); ++i) {
     const auto [x, y, z] = soup[i];
     const auto next = static_cast<std::uint32_t>(out.points.size());
-    const auto [known, fresh] = numbers.try_emplace({x + 0.0F, y + 0.0F, z + 0.0F}, next);  // -0 becomes 0
+    const auto [known, fresh] = numbers.try_emplace({x + 0.0F, y + 0.0F, z + 0.0F}, next);  // adding 0 turns -0 into 0
     if (fresh) out.points.emplace_back(options.unit * (upright(soup[i], y_is_up) - origin));
     out.corners[i / 3][i % 3] = known->second;
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Reading and checking of triangle surfaces.
+// Functions that read and check triangle surfaces.
 #pragma once
 
 #include "options.hpp"
@@ -16,20 +16,20 @@ namespace palpate::shapes {
 
 constexpr std::size_t kMostTriangles = 5'000'000;
 
-/// Three corners per triangle in the units of the file, single precision as read by assimp.
+/// Three corners per triangle, in the units of the file. They have single precision, as assimp returns them.
 using Soup = std::vector<std::array<float, 3>>;
 
-/// Reads STL, OBJ or PLY, depending on the extension of `file`, by assimp. Faces with more than three corners are
-/// divided. Other files, such as the materials of an OBJ, are not read. A child process does the work, because broken
-/// files may crash assimp. Throws Error with the file as its place: another format, truncated, invalid, without
-/// triangles, or with too many.
+/// Reads an STL, OBJ or PLY file with assimp, depending on the extension of `file`. Faces with more than three corners
+/// are divided. No other file is read, such as the materials of an OBJ. A child process does the work, because broken
+/// files may crash assimp. Throws Error with the file as its place if the format is not one of these, or if the file is
+/// truncated, invalid, without triangles, or with too many.
 Soup import_triangles(std::string bytes, const std::string& file);
 
-/// Triangles in metres, in the frame of Shape: the lowest point is at height 0, the rectangle around the outline is
-/// centred.
+/// Triangles in metres, in the frame of Shape. The lowest point is at height 0, and the bounding rectangle of the
+/// outline is centred.
 struct Triangles {
   std::vector<Eigen::Vector3d> points;
-  std::vector<std::array<std::uint32_t, 3>> corners;  ///< indices of points
+  std::vector<std::array<std::uint32_t, 3>> corners;  ///< indices of the corners in `points`
 };
 
 /// Reads a surface, merges equal points and moves it into place. Throws Error with the file as its place:

@@ -29,21 +29,21 @@ double Prism::top(double s, double t) const {
 }
 
 double Prism::first_intersection(const Line& line) const {
-  // Interval between the planes of top and bottom.
+  // Interval of the line between the planes of bottom and top.
   Interval between;
   between.clip(line.origin.z(), line.direction.z(), 0.0, height_);
   if (between.empty()) return kInfinity;
   const double enters = between.begin;
   const Point direction{line.direction.x(), line.direction.y()};
-  // A nearly vertical line leaves the outline only far beyond the height of the prism.
+  // A nearly vertical line leaves the outline only at heights far beyond the prism.
   if (std::abs(direction[0]) + std::abs(direction[1]) < 1e-12) {
     const double s = line.origin.x() + enters * direction[0];
     const double t = line.origin.y() + enters * direction[1];
     if (top(s, t) == height_) return enters;
     return kInfinity;
   }
-  // Each crossing, as seen from above, enters or leaves the outline. If the line is inside when it enters the slab
-  // between both planes, this is the intersection; otherwise it is the first wall within the slab.
+  // At each crossing, as seen from above, the line enters or leaves the outline. If the line is inside the outline when
+  // it passes the first plane, the intersection is there. Otherwise it is at the first wall between the planes.
   bool inside = false;
   double wall = kInfinity;
   const auto visit = [&](double x) {

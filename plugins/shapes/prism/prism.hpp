@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Prisms over polygons: any outline without crossings, with at most one hole.
+// Prisms over polygons. An outline can be any polygon whose edges do not cross, with at most one hole.
 #pragma once
 
 #include "shapes/solid.hpp"
@@ -10,14 +10,16 @@
 namespace palpate::shapes {
 
 using Point = std::array<double, 2>;
-/// Corners in order, in either direction. The last edge leads to the first corner.
+/// Corners of a polygon in order, clockwise or counter-clockwise. The last edge goes from the last corner to the first
+/// one.
 using Outline = std::vector<Point>;
 
-/// Returns the corner after corner `i`.
+/// Returns the corner that follows corner `i`.
 inline const Point& next(const Outline& outline, std::size_t i) { return outline[i + 1 == outline.size() ? 0 : i + 1]; }
 
-/// Calls visit(x) for each x at which the line `origin + x * direction`, seen from above, crosses the outline. A line
-/// through a corner crosses exactly one of its edges or none, because the side of a corner is computed once for both.
+/// Calls visit(x) for each x at which the line `origin + x * direction` crosses the outline, as seen from above. If a
+/// line passes through a corner, it crosses exactly one of the two edges or neither, because the side of the corner is
+/// computed once for both.
 template <class Visit>
 void visit_crossings(const Outline& outline, const Point& origin, const Point& direction, const Visit& visit) {
   const double squared = direction[0] * direction[0] + direction[1] * direction[1];
@@ -43,7 +45,7 @@ bool contains(const Outline& outline, const Point& point);
 
 class Prism : public Shape {
  public:
-  /// `hole` may be empty. The centre of the rectangle around `outline` becomes the origin.
+  /// `hole` may be empty. The bounding rectangle of `outline` is moved so that its centre is the origin.
   Prism(Outline outline, Outline hole, double height);
 
   double top(double s, double t) const final;
@@ -56,7 +58,7 @@ class Prism : public Shape {
   double height_;
 };
 
-/// Options of L and T: two bars of equal thickness.
+/// Options of the shapes L and T, which consist of two bars of equal thickness.
 struct BarsOptions : Options {
   double length = 0.14;
   double width = 0.1;

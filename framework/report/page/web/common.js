@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: MIT
-// Functions of all pages. Texts of a config reach a page only as the text of an element, or through plain() in a plot,
-// which interprets some markup.
+// Functions that all pages use. Texts of a config reach a page only as the text of an element, or in a plot through
+// plain(), because plots interpret some markup.
 
-/// Decompresses bytes in base64. Returns a response to read.
+/// Decompresses bytes in base64. Returns a Response, from which the caller reads the bytes.
 function inflate(text, format) {
   const bytes = Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
   return new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream(format)));
 }
 
-/// Decompresses a packed element of this page. Returns a response to read.
+/// Decompresses a packed element of this page. Returns a Response, from which the caller reads the bytes.
 function unpack(id) {
   const { type, textContent } = document.getElementById(id);
   return inflate(textContent, type.replace("application/", ""));
 }
 
-/// Runs plotly, which sets the global Plotly.
+/// Executes the script of plotly, which sets the global variable Plotly.
 async function loadPlotly() {
   document.head.append(element("script", {}, await unpack("plotly").text()));
 }
@@ -25,7 +25,7 @@ function hasWebGL() {
   return Boolean(canvas.getContext("webgl2") || canvas.getContext("webgl"));
 }
 
-/// Returns an element with attributes. Children that are not elements become text.
+/// Returns an element with attributes. Children that are not elements become text nodes.
 function element(tag, attributes = {}, ...children) {
   const out = document.createElement(tag);
   for (const [name, value] of Object.entries(attributes)) out.setAttribute(name, value);
@@ -33,12 +33,13 @@ function element(tag, attributes = {}, ...children) {
   return out;
 }
 
-/// Returns an element with text of a config, isolated so that marks of direction in it do not affect other text.
+/// Returns an element with text of a config. The element isolates the text, so that characters for the direction of
+/// writing in it do not affect other text.
 function foreign(text) {
   return element("bdi", { class: "foreign" }, String(text));
 }
 
-/// Returns text on one line and without marks of direction.
+/// Returns text on one line, without characters for the direction of writing.
 function oneLine(text) {
   return String(text)
     .replace(/[\n\r\t]+/g, " ")
@@ -50,12 +51,12 @@ function plain(text) {
   return oneLine(text).replace(/&/g, "&amp;").replace(/</g, "&lt;").replace(/>/g, "&gt;");
 }
 
-/// Returns a row of a table; cells after the first `left` ones are right-aligned.
+/// Returns a row of a table. The first `left` cells are left-aligned, all others right-aligned.
 function tableRow(tag, cells, left = cells.length) {
   return element("tr", {}, ...cells.map((cell, i) => element(tag, i < left ? {} : { class: "number" }, cell)));
 }
 
-/// Returns a table; its cells are texts or elements.
+/// Returns a table whose cells are texts or elements.
 function table(header, rows, left) {
   const head = element("thead", {}, tableRow("th", header, left));
   const body = element("tbody", {}, ...rows.map((row) => tableRow("td", row, left)));
@@ -73,7 +74,7 @@ function factList(facts) {
   return element("ul", { class: "facts" }, ...items);
 }
 
-/// Returns a list of warnings, each a list of texts and elements; nothing without warnings.
+/// Returns a list of warnings. Each warning is a list of texts and elements. Returns nothing if there are no warnings.
 function warningList(warnings) {
   const items = warnings.map((words) => element("li", {}, ...words));
   return items.length > 0 ? [element("ul", { class: "warnings", id: "warnings" }, ...items)] : [];
@@ -84,8 +85,8 @@ function section(title, ...children) {
   return element("section", {}, element("h2", {}, title), ...children);
 }
 
-/// Returns a place for a plot with its caption. The wheel scrolls the page, also over plots: a plot receives its events
-/// only while Ctrl is pressed.
+/// Returns an element for a plot, with a caption below it. The wheel scrolls the page, even over plots. A plot receives
+/// wheel events only while Ctrl is pressed.
 function figure(id, caption) {
   const place = element("div", { id, class: "plot" });
   const scrolls = (event) => !event.ctrlKey && !event.metaKey;
@@ -109,17 +110,17 @@ function counted(count, what) {
   return `${count} ${what}${count === 1 ? "" : "s"}`;
 }
 
-/// Returns the least and the greatest of any number of values.
+/// Returns the least and the greatest of the values.
 const extent = (values) => [values.reduce((a, b) => Math.min(a, b), Infinity), values.reduce((a, b) => Math.max(a, b), -Infinity)];
 
 // Pages show positions, heights and their standard deviations in centimetres (config/display_units.hpp).
 const kCentimetres = 100;
 
-// The colour scales of uncertainties, and of values that say where to tap.
+// The colour scale of uncertainties, and the colour scale of values that show where to tap.
 const kUnknown = kColours.cividis;
 const kWhere = kColours.viridis;
 
-/// data.units: units by column.
+/// The units of all columns, from data.units.
 let units = {};
 
 /// Returns the unit in which a column of a record is shown. A value in SI times `factor` is in that unit.
@@ -141,10 +142,10 @@ const kGrey = "#9a9a9a";
 
 /// Whether the page is as narrow as on a phone, as in style.css.
 const kNarrow = matchMedia("(max-width: 640px)");
-/// Whether the pointer is a finger, which then scrolls instead of selecting areas of plots.
+/// Whether the pointer is a finger. Fingers scroll instead of selecting areas of plots.
 const kFingers = matchMedia("(pointer: coarse)");
 
-/// Returns the layout of all plots, with changes.
+/// Returns the layout that all plots share, changed by `more`.
 function layout(more = {}) {
   return {
     margin: { l: 54, r: 12, t: 8, b: 42 },
@@ -163,8 +164,8 @@ function axis(title, more = {}) {
   return { title: { text: title }, zeroline: false, gridcolor: grid, linecolor: lines, tickcolor: lines, ...more };
 }
 
-/// Returns the layout of a plot that can be turned. The axes decide its scale: a flat surface would otherwise be
-/// enlarged to fill the plot.
+/// Returns the layout of a plot that can be turned. The axes determine the scale of the plot. Otherwise plotly would
+/// enlarge a flat surface until it fills the plot.
 function turntable(scene) {
   return {
     margin: { l: 0, r: 0, t: 0, b: kNarrow.matches ? 56 : 0 },
@@ -174,20 +175,20 @@ function turntable(scene) {
   };
 }
 
-/// Returns the colour scale beside a plot.
+/// Returns the colour bar next to a plot.
 const colourBar = (title, more = {}) => ({ title: { text: title, side: "right" }, thickness: 12, outlinecolor: themed("line"), ...more });
 
-/// Returns a trace of points with `text` as their hover.
+/// Returns a trace of points. `text` has the hover texts.
 function points(name, x, y, text, marker, more = {}) {
   return { type: "scatter", mode: "markers", name, x, y, text, marker, hovertemplate: "%{text}<extra></extra>", ...more };
 }
 
-/// Draws into the figure `id`; `more` changes the layout.
+/// Draws a plot into the figure `id`. `more` changes the layout.
 function plot(id, traces, more = {}) {
   return Plotly.react(id, traces, layout(more), { responsive: true, displaylogo: false, displayModeBar: false });
 }
 
-/// Shows an error on the page; later drawings go on.
+/// Shows an error on the page. Later drawings are still possible.
 function showError(trouble) {
   document.body.prepend(element("p", { class: "trouble" }, `A part of this page could not be drawn: ${trouble}`));
   console.error(trouble);
@@ -199,19 +200,20 @@ function inTurn(draw) {
   return inTurn.last;
 }
 
-/// Draws what an input asks for. Of several requests during one drawing, the last one is drawn.
+/// Calls `draw` for each change of an input. If the input changes several times during one drawing, only the last
+/// change is drawn.
 function drawLatest(input, draw) {
   const wanted = input.value;
   return inTurn(() => (wanted === input.value ? draw(Number(wanted)) : undefined));
 }
 
-/// Publishes what is drawn, for tests that wait for it.
+/// Publishes the description of the current drawing, for which tests wait.
 function publishDrawn(what) {
   document.body.dataset.drawn = String(what);
 }
 
-/// Unpacks the page's data and passes it to `draw`, which fills the page and returns a function that redraws all plots
-/// in the current colours. Shows an error if it fails.
+/// Unpacks the page's data and passes it to `draw`. `draw` fills the page and returns a function that redraws all plots
+/// in the present colours. If `draw` fails, the page shows the error.
 async function openPage(draw) {
   try {
     const [data, maps] = await Promise.all([unpack("data").json(), unpack("maps").arrayBuffer(), loadPlotly()]);

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: MIT
-// Updates of pages that `palpate watch` serves. A page in a file has no data.live, and nothing here has an effect.
+// Updates of the pages that `palpate watch` serves. A page in a file has no data.live, and the functions of this file
+// do nothing.
 
-/// Waits for this many milliseconds, or until `until` fires.
+/// Waits for this many milliseconds, or until the signal `until` is aborted.
 const pause = (milliseconds, until = new AbortController().signal) =>
   new Promise((done) => {
     setTimeout(done, milliseconds);
     until.addEventListener("abort", done, { once: true });
   });
 
-/// Returns an element for the state of the connection; nothing for a page in a file.
+/// Returns an element that shows the state of the connection. Returns nothing for a page in a file.
 function liveNote(data) {
   return data.live === undefined ? "" : element("span", { id: "live", class: "live" }, "live");
 }
@@ -18,8 +19,8 @@ function showConnection(words) {
   if (note) note.textContent = words;
 }
 
-/// Asks the server for updates, again and again, and lets `take` apply each between drawings. A page in the background
-/// asks rarely and holds no connection: a browser has few per server.
+/// Requests updates from the server in a loop. `take` applies each update, between two drawings. A page in the
+/// background sends requests rarely and holds no connection open, because a browser allows few connections per server.
 async function follow(data, take) {
   const kSleep = 20000;
   const kAfterTrouble = 2000;
@@ -50,7 +51,7 @@ async function follow(data, take) {
   }
 }
 
-/// Draws the page of a run or sweep without anything to show yet.
+/// Draws the page of a run or sweep that has nothing to show yet.
 function drawWaiting(data) {
   const words = element("p", { id: "waiting" }, foreign(data.waiting));
   document.body.append(element("div", { class: "controls" }, liveNote(data)), words);
@@ -58,16 +59,16 @@ function drawWaiting(data) {
   return () => publishDrawn("waiting");
 }
 
-/// Shows why the page cannot be updated, until that changes.
+/// Shows why the page cannot be updated, as long as this is so.
 function showTrouble(trouble) {
   document.getElementById("standing").append(element("p", { class: "trouble" }, foreign(trouble)));
 }
 
-/// Largest number of values in a page's maps. A page with more is reloaded, with maps of fewer moments: the server
-/// keeps no more of a long run.
+/// Largest number of values in a page's maps. A page with more values is reloaded and then has maps of fewer moments,
+/// because the server keeps only these for a long run.
 const kMostNumbers = 12e6;
 
-/// Adds moments to the page of a run. The slider follows if it stood at the last tap.
+/// Adds moments to the page of a run. If the slider was at the last tap, it moves to the new last tap.
 async function growRun(slider, news) {
   if (news.trouble) return showTrouble(news.trouble);
   const { data, input } = slider;
@@ -75,7 +76,7 @@ async function growRun(slider, news) {
   data.moments.push(...news.moments);
   data.taps.push(...news.taps);
   for (const name of ["state", "stop_reason", "summary", "curves", "constants", "warnings"]) data[name] = news[name];
-  data.true_contours = news.true_contours ?? data.true_contours;  // changes if objects are pushed
+  data.true_contours = news.true_contours ?? data.true_contours;  // The contours change if taps push objects.
   if (news.bytes) {
     const bytes = await inflate(news.bytes, "deflate").arrayBuffer();
     const further = unpackMoments(data, news, new Uint8Array(bytes));
@@ -87,10 +88,11 @@ async function growRun(slider, news) {
   if (newest) input.value = input.max;
   document.getElementById("standing").replaceChildren(...runState(data));
   slider.stale = true;
-  slider.show();  // draws after this update
+  slider.show();  // The slider draws after this update.
 }
 
-/// Applies new results to the page of a sweep and keeps its reader's choices. Other columns need a new page.
+/// Applies new results to the page of a sweep. The choices of its reader are kept. If the columns have changed, a new
+/// page is needed.
 function growSweep(sweep, news) {
   const fresh = { ...news.sweep, live: news.at };
   if (fresh.trouble) return showTrouble(fresh.trouble);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Playback of a run's taps.
+// A player that shows a run tap by tap.
 
-/// A button that moves a slider through the taps. It starts at the slider's tap, or after the last tap at the first,
-/// and stops at the last tap or when the reader moves the slider.
+/// A button that moves a slider through the taps. The player starts at the slider's tap, or at the first tap if the
+/// slider is at the last one. It stops at the last tap, or when the reader moves the slider.
 class Player {
   constructor(slider) {
     this.slider = slider;
@@ -25,9 +25,9 @@ class Player {
   }
 
   async play() {
-    const kLookAtEach = 400;  // milliseconds between taps, without the time of drawing
+    const kLookAtEach = 400;  // milliseconds between taps; the time of drawing is added
     const { input } = this.slider;
-    const turn = {};  // a later click has another object
+    const turn = {};  // A later click creates another object, by which this loop recognises that it must stop.
     this.playing = turn;
     this.label("⏸", "pause");
     if (input.value === input.max) {

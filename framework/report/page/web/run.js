@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
-// The page of a run: a slider over its taps, surface and maps at that tap, curves over all taps.
+// The page of a run, with a slider over the taps. It shows surface and maps at the chosen tap, and curves over all
+// taps.
 
-/// Layouts of axes, by `axis` of a panel (curves.hpp).
+/// Layouts of axes, by the value `axis` of a panel (curves.hpp).
 const kAxes = {
   free: {},
   from_zero: { rangemode: "tozero" },
@@ -43,7 +44,7 @@ function facts(data) {
   return factList(items.filter(([value]) => value !== kNothing).map(([value, unit, name]) => [`${value}${unit}`, name]));
 }
 
-/// Returns the state of a run with its numbers and warnings, which may change with every tap.
+/// Returns the state of a run with its numbers and warnings. Every tap may change them.
 function runState(data) {
   const state = data.state === "done" ? `stopped by: ${data.stop_reason}` : data.stop_reason ? `${data.state}: ${data.stop_reason}` : data.state;
   const footprint = data.any_side ? [] : [", footprint ", foreign(data.footprint)];
@@ -51,7 +52,7 @@ function runState(data) {
   return [strategy, facts(data), ...warningList(data.warnings.map((text) => [foreign(text)]))];
 }
 
-/// Draws all curves; other titles than before need new figures.
+/// Draws all curves. If the titles of panels have changed, the figures are created again.
 function drawAllCurves(data) {
   const row = document.getElementById("curves");
   const titles = JSON.stringify(data.curves.map(({ title }) => title));
@@ -61,12 +62,12 @@ function drawAllCurves(data) {
   return Promise.all(data.curves.map((one, i) => drawCurves(`curve_${i}`, one, data.moments.map((moment) => moment.taps))));
 }
 
-/// Returns the position or line of a tap in words.
+/// Returns a text with the position or line of a tap.
 const whereTo = (tap) => (fromAnySide(tap) ? wayOf(tap) : `at ${place(tap)}`);
 
 const kChosenBy = { initial: "the initial design", acquisition: "the acquisition", fallback: "the fallback", caller: "the caller" };
 
-/// Returns the tap of a moment in words.
+/// Returns a text about the tap of a moment.
 function story(data, moment, drawn) {
   const out = [];
   const tap = data.taps[moment.taps - 1];
@@ -101,19 +102,19 @@ function story(data, moment, drawn) {
   return element("p", { class: "story", id: "story" }, foreign(out.join(" ")));
 }
 
-/// The slider and all that it changes.
+/// The slider, and the elements that it changes.
 class Slider {
   constructor(data, maps) {
     this.data = data;
     this.surface = data.any_side ? new SpaceView(data, maps) : new SurfaceView(data, maps);
     [this.panels, this.constant] = data.any_side ? [[], []] : mapPanels(data, maps);
-    // With WebGL, the colours of the surface show the deviation.
+    // With WebGL, the colours of the surface show the standard deviation.
     if (!this.surface.spatial && !data.any_side) this.panels.unshift(this.surface.deviationPanel());
     this.input = element("input", { type: "range", id: "slider", min: 0, max: data.moments.length - 1, step: 1, value: data.moments.length - 1, "aria-label": "tap" });
     this.output = element("output", { id: "at", for: "slider" });
     this.truth = element("input", { type: "checkbox", id: "truth" });
     this.player = new Player(this);
-    this.stale = true;  // whether curves need to be drawn
+    this.stale = true;  // whether the curves must be drawn again
   }
 
   /// Adds the maps of further moments.
@@ -125,7 +126,7 @@ class Slider {
     }
   }
 
-  /// Returns the number of values in all maps or surfaces; `news` has the number of maps.
+  /// Returns the number of values in all maps or surfaces. `news` is an update, which has the number of maps.
   numbers(news) {
     if (this.data.any_side) return 10 * this.surface.surfaces.reduce((sum, { x }) => sum + x.length, 0);
     return this.data.shown.length * news.maps.length * this.data.x.length * this.data.y.length;
@@ -143,7 +144,7 @@ class Slider {
       this.surface.withTruth = this.truth.checked;
       this.show();
     });
-    // Arrow keys move the slider from everywhere except controls that use keys themselves.
+    // Arrow keys move the slider, unless the focus is on a control that uses these keys.
     document.addEventListener("keydown", (event) => {
       const step = { ArrowLeft: -1, ArrowRight: 1 }[event.key];
       const busy = event.target !== this.input && event.target.closest?.("input:not([type=checkbox]), select, textarea");
@@ -155,12 +156,12 @@ class Slider {
     });
   }
 
-  /// Draws the moment of the slider.
+  /// Draws the moment at which the slider is.
   show() {
     return drawLatest(this.input, (at) => this.draw(at));
   }
 
-  /// Draws all plots, at first and after changes of colours.
+  /// Draws all plots, at the beginning and after each change of colours.
   redraw() {
     this.stale = true;
     return this.show();
@@ -168,7 +169,7 @@ class Slider {
 
   async draw(at) {
     const moment = this.data.moments[at];
-    // The latest maps up to this moment, or the first ones.
+    // The latest maps up to this moment, or the first maps if all are later.
     const frame = Math.max(0, this.data.shown.findLastIndex((one) => one <= at));
     const of = this.data.moments[this.data.shown[frame]];
     this.output.textContent = `after tap ${moment.taps} of ${this.data.taps.length}`;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Surface and maps of a run at one moment, with its taps.
 
-/// Returns the maps by name; a map is a list of frames, a frame a list of rows.
+/// Returns the maps by name. A map is a list of frames, and a frame is a list of rows.
 function unpackMaps(bytes, described, columns, rows) {
   const out = {};
   const cells = columns * rows;
@@ -25,10 +25,11 @@ function unpackMaps(bytes, described, columns, rows) {
 const scaled = (lines, factor) => lines.map((line) => line.map((value) => value * factor));
 const product = (a, b) => a.map((line, row) => line.map((value, column) => value * b[row][column]));
 
-/// Returns whether the contact of a tap counts as on an object at a moment; null for a tap without a contact.
+/// Returns whether the contact of a tap counts as on an object at a moment. Returns null for a tap without a contact.
 const labelAt = (moment, tap) => (tap.on_object === null ? null : tap.on_object !== moment.relabelled.includes(tap.tap));
 
-/// Returns the first `taps` taps of a run: on the object, on the desk, failed, by their labels after these taps.
+/// Returns the first `taps` taps of a run in three lists: on the object, on the desk, failed. The labels are those
+/// after these taps.
 const tapsUntil = (run, taps) => [true, false, null].map((touched) => run.taps.slice(0, taps).filter((tap) => labelAt(run.moments[taps], tap) === touched));
 
 const centimetres = (...metres) => `(${metres.map((value) => shown(value * kCentimetres, 3)).join(", ")}) cm`;
@@ -39,10 +40,10 @@ function hover(tap) {
   return `tap ${tap.tap}: ${plain(found)}`;
 }
 
-/// Returns a list with the next tap, or an empty one; `word` is its hover.
+/// Returns a list with the next tap, or an empty list. `word` is the hover text.
 const nextOf = (moment) => (moment.next ? [{ ...moment.next, word: `next, tap ${moment.taps + 1}` }] : []);
 
-/// Returns marks in the plane for taps; `word`, if any, is the hover.
+/// Returns a trace with marks of taps in the plane. `word`, if any, is the hover text.
 function markTrace(taps, name, marker, more = {}) {
   const along = (side) => taps.map((tap) => tap[side] * kCentimetres);
   return points(name, along("x"), along("y"), taps.map((tap) => tap.word ?? hover(tap)), marker, more);
@@ -51,18 +52,18 @@ function markTrace(taps, name, marker, more = {}) {
 const kNextColour = "#e6007e";
 const edge = (color, width) => ({ color, width });
 
-/// Returns the taps that are suspected outliers at this moment, with probability and reason as hover.
+/// Returns the taps that are suspected outliers at this moment. The hover text has probability and reason.
 const suspectedOf = (data, moment) =>
   (moment.suspected_outliers ?? []).map((one) => ({ ...data.taps[one.tap - 1], word: `tap ${one.tap} may be an outlier: ${one.words}` }));
 
-/// Returns crosses that are visible on dark and on light.
+/// Returns crosses that are visible on dark and on light backgrounds.
 const deskMarks = (taps) => [
   markTrace(taps, "on the desk", { symbol: "x-thin", size: 9, line: edge("#ffffff", 4) }),
   markTrace(taps, "on the desk", { symbol: "x-thin", size: 8, line: edge("#000000", 1.8) }, { showlegend: false }),
 ];
 
-/// Returns the marks of taps in the plane: discs on the object, crosses on the desk, squares for failed taps, rings
-/// around suspected outliers, a star for the next tap.
+/// Returns the marks of taps in the plane: discs for taps on the object, crosses for the desk, squares for failed taps,
+/// rings around suspected outliers, a star for the next tap.
 function marks(data, moment) {
   const [on, off, failed] = tapsUntil(data, moment.taps);
   const suspected = suspectedOf(data, moment);
@@ -76,8 +77,8 @@ function marks(data, moment) {
   ];
 }
 
-/// Returns the panels of maps, and {title, value} of the maps that are constant over all cells and moments. A run that
-/// goes on has no constant maps.
+/// Returns the panels of maps, and {title, value} for each map that has the same value in all cells and at all moments.
+/// In a run that is not finished, no map counts as constant.
 function mapPanels(data, maps) {
   const panel = (id, of, rangeOf = () => [0, 1], colours = kWhere) => {
     const frames = of(maps);
@@ -90,26 +91,26 @@ function mapPanels(data, maps) {
     const exploration = ({ u, w }) => u.map((lines, frame) => product(lines, w[frame]));
     const upTo = (frames) => {
       const largest = extent(frames.flat(2))[1];
-      return [0, largest > 1e-6 ? largest : 1];  // a map of rounding errors has the range 0 to 1
+      return [0, largest > 1e-6 ? largest : 1];  // If all values are rounding errors, the range is 0 to 1.
     };
     panels.push(panel("w", ({ w }) => w), panel("e", exploration, upTo));
   }
   if (maps.score) panels.push(panel("score", ({ score }) => score, (frames) => extent(frames.flat(2))));
   const varied = ({ frames }) => {
     const [least, most] = extent(frames.flat(2));
-    return data.live !== undefined || most - least > 1e-6;  // rounding errors do not count as a change
+    return data.live !== undefined || most - least > 1e-6;  // Changes by rounding errors are ignored.
   };
   const constant = panels.filter((one) => !varied(one)).map(({ title, frames }) => ({ title, value: frames[0][0][0] }));
   return [panels.filter(varied), constant];
 }
 
-/// Returns the colour bar beside a surface, or below it on a narrow screen.
+/// Returns the colour bar of a surface. It is next to the surface, or below it on a narrow screen.
 function deviationBar(label) {
   const below = { title: { text: label, side: "bottom" }, orientation: "h", y: 0, yanchor: "top", ypad: 0, thickness: 10, len: 0.9 };
   return colourBar(label, kNarrow.matches ? below : { len: 0.8 });
 }
 
-/// Returns colours of standard deviations of the height, in centimetres, by the scale in the page's data.
+/// Returns colours for standard deviations of the height in centimetres. The page's data has the scale.
 function deviationColours(lines, { low, high, logarithmic, label }) {
   const bar = deviationBar(label);
   if (!logarithmic) return { surfacecolor: lines, cmin: low, cmax: high, colorbar: bar };
@@ -152,11 +153,11 @@ function heatMap(data, lines, range, colours, title) {
   };
 }
 
-/// The surface in three dimensions, or a map if the browser has no WebGL.
+/// The surface in three dimensions. If the browser has no WebGL, it is shown as a map.
 class SurfaceView {
   constructor(data, maps) {
     this.data = data;
-    this.flat = data.x.length < 2 || data.y.length < 2;  // one line of cells
+    this.flat = data.x.length < 2 || data.y.length < 2;  // whether the grid is a single line of cells
     this.spatial = hasWebGL() && !this.flat;
     this.heights = [];
     this.deviations = [];
@@ -167,14 +168,14 @@ class SurfaceView {
     this.y = data.y.map((value) => value * kCentimetres);
   }
 
-  /// Adds the maps of further moments, and the present truth.
+  /// Adds the maps of further moments, and replaces the truth by its present state.
   grow(maps) {
     this.heights.push(...maps.height.map((lines) => scaled(lines, kCentimetres)));
     this.deviations.push(...maps.deviation.map((lines) => scaled(lines, kCentimetres)));
     this.colours.push(...maps.deviation_colours);
     this.truth = maps.truth ? scaled(maps.truth[0], kCentimetres) : null;
     this.range = extent([...this.heights, this.truth ?? []].flat(2));
-    // Lifts marks above the surface, which would hide their lower halves.
+    // Marks are shown this much above the surface, which would otherwise hide their lower halves.
     this.lift = 0.06 * (this.range[1] - this.range[0]);
   }
 
@@ -195,14 +196,14 @@ class SurfaceView {
       x: this.x,
       y: this.y,
       z: this.heights[frame],
-      // per frame, because a fit may change them a hundredfold
+      // The scale is chosen per frame, because a fit may change the deviations by a factor of a hundred.
       ...deviationColours(this.deviations[frame], this.colours[frame]),
       colorscale: kUnknown,
       customdata: this.deviations[frame],
       hovertemplate: "x %{x:.1f} cm, y %{y:.1f} cm<br>height %{z:.4r} cm<br>standard deviation %{customdata:.3r} cm<extra></extra>",
     };
     const [on, off] = tapsUntil(this.data, moment.taps);
-    // At the top, where the arm comes from, so that the surface never hides it.
+    // The mark of the next tap is at the top, from where the arm comes, so that the surface never hides it.
     const above = this.range[1] / kCentimetres;
     const next = nextOf(moment).map((one) => ({ ...one, height: this.heightAt(frame, one) / kCentimetres, above }));
     const raised = (taps, name, marker) => markTrace(taps, name, marker, { type: "scatter3d", z: taps.map((tap) => this.pin(tap)[1]) });
@@ -211,7 +212,7 @@ class SurfaceView {
       this.pins([...on, ...off, ...next]),
       raised(on, "on the object", { symbol: "circle", size: kNarrow.matches ? 4 : 6, color: "#ffffff", line: edge("#000000", 2) }),
       raised(off, "on the desk", { symbol: "cross", size: 5, color: themed("ink") }),
-      // plotly has letters but no stars in three dimensions; letters always face the viewer.
+      // In three dimensions, plotly has no stars, but it has letters, which always face the viewer.
       {
         ...raised(next, "next", {}),
         mode: "text",
@@ -226,7 +227,7 @@ class SurfaceView {
     return out;
   }
 
-  /// Returns the ends of a line from the surface up to the mark of a tap.
+  /// Returns the ends of the vertical line from the surface up to the mark of a tap.
   pin(tap) {
     const [foot, above] = [tap.height, tap.above ?? tap.height].map((height) => height * kCentimetres);
     return [foot, above + this.lift];
@@ -253,10 +254,10 @@ class SurfaceView {
     return this.heights[frame][nearest(this.data.y, y)][nearest(this.data.x, x)];
   }
 
-  /// Returns a panel with the deviations that the surface shows by colours.
+  /// Returns a panel with the standard deviations that the colours of the surface show.
   deviationPanel() {
     const rangeOf = (frames) => [0, extent(frames.flat(2))[1]];
-    const frames = this.deviations;  // grows with the surface
+    const frames = this.deviations;  // The list grows with the surface.
     return { id: "deviation", title: this.data.titles.deviation, bar: "cm", of: () => [], frames, rangeOf, range: rangeOf(frames), colours: kUnknown };
   }
 
@@ -280,7 +281,8 @@ class SurfaceView {
     const low = Math.min(this.range[0], this.data.desk * kCentimetres);
     const range = [low, this.range[1] + this.lift + 0.05 * (this.range[1] - low) + 0.1];
     const [width, depth] = [this.data.width, this.data.depth].map((metres) => metres * kCentimetres);
-    // Fills the plot in this view of the camera; a height equal to the width would reach the colour scale below.
+    // The surface fills the plot in this view. If the height were equal to the width, the plot would reach the colour
+    // bar below.
     const side = Math.max(width, depth) / (kNarrow.matches ? 1.05 : 1.3);
     return turntable({
       aspectratio: { x: width / side, y: depth / side, z: Math.max((range[1] - range[0]) / side, 0.15) },

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 // Closed surface and taps of a run from any side at one moment.
 
-/// Returns the values whose differences the page has, times `unit`.
+/// Returns values from their differences `steps`, multiplied by `unit`.
 function summed(steps, unit) {
   let sum = 0;
   return steps.map((step) => unit * (sum += step));
 }
 
-/// Returns a mesh for plotly, in centimetres, with the deviations of its vertices in millimetres.
+/// Returns a mesh for plotly in centimetres. The standard deviations of its vertices are in millimetres.
 function unpackSurface({ x, y, z, i, j, k, deviation }) {
   const corners = { i: summed(i, 1), j: summed(j, 1), k: summed(k, 1) };
   return { x: summed(x, 0.01), y: summed(y, 0.01), z: summed(z, 0.01), ...corners, deviation: summed(deviation, 0.01) };
@@ -16,10 +16,10 @@ function unpackSurface({ x, y, z, i, j, k, deviation }) {
 const fromAnySide = (tap) => tap["direction.x"] !== undefined;
 const kAxes3 = ["x", "y", "z"];
 const directionOf = (tap) => kAxes3.map((side) => tap[`direction.${side}`]);
-/// Returns the position after this path length of a tap, in metres.
+/// Returns the position at this length of a tap's path, in metres.
 const along = (tap, way) => kAxes3.map((side, i) => tap[side] + way * directionOf(tap)[i]);
 
-/// Returns the direction of a tap in words.
+/// Returns a text about the direction of a tap.
 function slant(tap) {
   const degrees = Math.round((Math.asin(-tap["direction.z"]) * 180) / Math.PI);
   if (degrees > 85) return "straight down";
@@ -29,7 +29,7 @@ function slant(tap) {
 
 const wayOf = (tap) => `from ${centimetres(...along(tap, 0))}, ${slant(tap)}`;
 
-/// The surface with taps as arrows in three dimensions; nothing without WebGL.
+/// The surface with taps as arrows, in three dimensions. Nothing is shown if the browser has no WebGL.
 class SpaceView {
   constructor(data, surfaces) {
     this.data = data;
@@ -55,7 +55,7 @@ class SpaceView {
     this.surfaces.push(...surfaces);
     const taps = this.data.taps.filter((tap) => tap.on_object).map((tap) => along(tap, tap.along).map((value) => value * kCentimetres));
     const last = this.surfaces[this.surfaces.length - 1];
-    const kRoom = 2.5;  // centimetres for the arrows
+    const kRoom = 2.5;  // centimetres of free space for the arrows
     this.range = kAxes3.map((side, i) => {
       const area = [0, kCentimetres * [this.data.width, this.data.depth][i]];
       const [low, high] = extent([...last[side], ...taps.map((at) => at[i])]);
@@ -69,10 +69,10 @@ class SpaceView {
     return this.spatial ? `${what} Drag to turn${kFingers.matches ? "." : ", Ctrl and wheel to zoom."}` : "The surface is not drawn, because this browser has no WebGL.";
   }
 
-  /// Returns the last centimetres of a tap's path, or for a tap without a contact the part within the picture; null if
-  /// there is none.
+  /// Returns the last centimetres of a tap's path. For a tap without a contact, returns the part of the path within the
+  /// picture, or null if there is none.
   arrow(tap) {
-    const shaft = tap.word ? 0.06 : 0.03;  // the next tap is longer
+    const shaft = tap.word ? 0.06 : 0.03;  // The arrow of the next tap is longer.
     if (tap.on_object !== null) return [along(tap, Math.max(0, tap.along - shaft)), along(tap, tap.along)];
     let [begin, end] = [0, tap.along ?? tap.length];
     const [from, direction] = [along(tap, 0), directionOf(tap)];
@@ -102,7 +102,7 @@ class SpaceView {
   traces(frame, moment) {
     const surface = this.surfaces[frame];
     const [on, off, others] = tapsUntil(this.data, moment.taps);
-    const missed = others.filter((tap) => tap.outcome === "no_contact");  // the paths of other failed taps are unknown
+    const missed = others.filter((tap) => tap.outcome === "no_contact");  // The other failed taps have no known path.
     const most = Math.max(extent(surface.deviation)[1], 0);
     const next = nextOf(moment).map((one) => ({ ...one, on_object: one.along < one.length ? false : null }));
     const out = [

@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: MIT
-// The page of several runs: errors over taps and over robot time, and surfaces after a number of taps that a slider
-// sets.
+// The page of several runs. It shows errors over taps and over robot time, and the surfaces after the number of taps
+// that a slider sets.
 
-/// Returns the letter of a run, which its plots show.
+/// Returns the letter that stands for a run in plots.
 const letterOf = (index) => String.fromCharCode("A".charCodeAt(0) + index);
 const wordsOf = (run, index) => `${letterOf(index)}: ${run.name} ${run.id}`;
 
 /// Returns the title of an error with its unit.
 const errorTitle = ([name, title]) => (unitOf(name).unit ? `${title} [${unitOf(name).unit}]` : title);
 
-/// Returns the last map of a run with at most this many taps, or the first map.
+/// Returns the index of the last map of a run with at most this many taps, or of the first map if all have more.
 const frameAt = (run, taps) => Math.max(0, run.shown.findLastIndex((moment) => moment <= taps));
 
-/// The plots of one error over two costs, with all runs in each.
+/// The plots of one error against two costs. Each plot has all runs.
 class ErrorPlots {
   constructor(data) {
     this.data = data;
@@ -50,7 +50,7 @@ class ErrorPlots {
   }
 }
 
-/// The surfaces after the slider's number of taps, and their differences from the first.
+/// The surfaces after the slider's number of taps, and their differences from the first surface.
 class Surfaces {
   constructor(data, bytes) {
     this.data = data;

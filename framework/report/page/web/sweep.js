@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
-// The page of a sweep: cost against error, the table of jobs, and the controls.
+// The page of a sweep: the plot of cost against error, the table of jobs, and the controls.
 
-/// Returns an axis for values, logarithmic if they span a factor of 20; `low` and `high` are its ends. It includes
-/// `ends` up to half the range of the values beyond them: intervals of a few seeds may be much wider.
+/// Returns an axis for values. It is logarithmic if the largest value is at least 20 times the least. `low` and `high`
+/// are the ends of the axis. The axis includes interval ends (`ends`) that exceed the values by at most half their
+/// range, because intervals from few seeds may be much wider.
 function rangeOf(values, ends) {
   const [[least, most], [lowest, highest]] = [values, ends].map(extent);
   const room = Math.max(most - least, 1e-12) / 2;
@@ -18,7 +19,7 @@ function rangeOf(values, ends) {
   return { type: "linear", low: low - margin, high: high + margin, range: [low - margin, high + margin] };
 }
 
-/// Draws settings by mean cost and error with a line along the front, and their runs, failed ones in grey.
+/// Draws the settings by mean cost and error, with a line along the front. Also draws their runs; failed runs are grey.
 function drawFront(sweep, choice) {
   const settings = settingsOf(sweep, choice);
   const here = (jobs) => jobs.filter((job) => sweep.sceneOf(job) === choice.scene);
@@ -57,7 +58,7 @@ function frontTraces(sweep, settings, done, failed, x, y, edge) {
       type: "data",
       symmetric: false,
       array: list.map((one) => one[kind].half ?? 0),
-      // Bars end within a logarithmic axis.
+      // On a logarithmic axis, bars are cut at the end of the axis.
       arrayminus: list.map((one) => Math.min(one[kind].half ?? 0, type === "log" ? one[kind].mean - low / 2 : Infinity)),
       thickness: 1,
       width: 2,
@@ -86,7 +87,7 @@ function frontTraces(sweep, settings, done, failed, x, y, edge) {
   ];
 }
 
-/// Returns remarks on the units of the means, and on few seeds.
+/// Returns remarks about the units of the means, and about a small number of seeds.
 function meansWords(sweep, settings) {
   const kFew = 10;
   const rest = "numbered: no other setting is at least as good in both.";
@@ -126,7 +127,7 @@ function listFront(choice, front) {
   document.getElementById("front_list").replaceChildren(front.length > 0 ? table(header, rows, 2) : "");
 }
 
-/// The table of jobs, with sorting and a filter.
+/// The table of jobs, which can be sorted and filtered.
 class JobTable {
   constructor(sweep) {
     this.sweep = sweep;
@@ -148,7 +149,7 @@ class JobTable {
     return section("Jobs", element("p", {}, this.filter), element("div", { class: "scroll" }, this.table), this.note, this.more, ...this.howToReport());
   }
 
-  /// Sets the columns: title, sorting value and cell. Columns of numbers come last.
+  /// Sets the columns. A column has a title, a value for sorting and a cell. Columns of numbers come last.
   choose(choice) {
     const wanted = [choice.metric, choice.cost, choice.error, ...mainColumns(this.sweep)];
     const names = [...new Set(wanted)].filter((name) => this.sweep.columns.has(name) && !this.sweep.key(name));
@@ -172,12 +173,12 @@ class JobTable {
 
   /// Returns the number of a job, as a link if the job has a page.
   link(job) {
-    const live = this.sweep.live !== undefined;  // the server makes the pages of jobs
+    const live = this.sweep.live !== undefined;  // The server makes the pages of jobs.
     if (job.state === "missing" || !(live || job.reported)) return String(job.index);
     return element("a", { href: `jobs/${encodeURIComponent(job.id)}/${live ? "" : "report.html"}` }, String(job.index));
   }
 
-  /// Returns a note on making the page of a job; nothing if all jobs have one.
+  /// Returns a note that explains how to make the page of a job. Returns nothing if all jobs have a page.
   howToReport() {
     const bare = this.sweep.jobs.find((job) => !job.reported && job.state !== "missing");
     if (!bare || this.sweep.live !== undefined) return [];
@@ -193,7 +194,7 @@ class JobTable {
     if (this.by === null || this.by >= this.columns.length) return jobs;
     const { get } = this.columns[this.by];
     const sign = this.down ? -1 : 1;
-    // Jobs without a value come last in both orders.
+    // Jobs without a value are last in both orders.
     const compare = (a, b) => (a === null || b === null ? (a === null) - (b === null) : sign * (a < b ? -1 : a > b ? 1 : 0));
     return jobs.sort((a, b) => compare(get(a), get(b)));
   }
@@ -205,7 +206,7 @@ class JobTable {
       this.down = this.by === i && !this.down;
       this.by = i;
       this.show();
-      this.table.querySelectorAll("button")[i].focus();  // the button of the new header
+      this.table.querySelectorAll("button")[i].focus();  // the same button in the new header
     });
     return button;
   }
@@ -228,7 +229,7 @@ class JobTable {
   }
 }
 
-/// Returns warnings: failures by reason, and jobs that have not ended.
+/// Returns warnings about failures, by reason, and about jobs that have not ended.
 function troubles(sweep) {
   const { failures, reasons, jobs: all } = sweep.tally;
   const out = failures.map(({ reason, jobs, first, words }) => [
@@ -248,7 +249,7 @@ function troubles(sweep) {
   return out;
 }
 
-/// Returns a note if the page has a sample of the jobs.
+/// Returns a note if the page has only a sample of the jobs.
 function sampleNote({ sampled, jobs }) {
   if (!sampled) return [];
   const words = `This page has ${jobs.length} of ${sampled.jobs} jobs, one of ${sampled.step}, taken evenly from all settings: plots, means and the table below show only these. Counts and failures cover all jobs, and so do results.csv, 'palpate compare' and 'palpate pareto'.`;
@@ -283,7 +284,7 @@ function drawSweep(data) {
   return redraw;
 }
 
-/// Draws the page of a sweep without an ended job.
+/// Draws the page of a sweep in which no job has ended.
 function noPanels(sweep) {
   const jobs = new JobTable(sweep);
   document.body.append(element("p", { id: "nothing" }, "No job has a result yet: there is nothing to draw."), jobs.place());
@@ -292,7 +293,7 @@ function noPanels(sweep) {
   return () => publishDrawn(1);
 }
 
-/// Adds the panels with their controls, made by `chooser`.
+/// Adds the panels. `chooser` makes their controls.
 function placePanels(sweep, chooser) {
   const columns = [...sweep.columns.keys()];
   const [errors, costs] = ["is_error", "is_cost"].map((role) => columns.filter((name) => sweep.columns.get(name)[role]));
@@ -334,7 +335,7 @@ function drawPanels(sweep) {
       for (const panel of panels) await panel(sweep, choice);
       publishDrawn(++drawn);
     });
-  /// Returns a control that sets a choice and redraws the panels that depend on it.
+  /// Returns a control that sets a choice, and then redraws the panels that depend on this choice.
   const chooser = (id, label, names, panels, textOf = (name) => name) => {
     const options = names.map((name) => element("option", { value: name, ...(name === choice[id] ? { selected: "" } : {}) }, brief(textOf(name), 60)));
     const control = element("select", { id }, ...options);

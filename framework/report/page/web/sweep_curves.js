@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Curves of groups over their taps, one plot per scene; the numbers are those of analysis/group_curves.hpp.
+// Curves of groups over their taps, with one plot per scene. The numbers come from analysis/group_curves.hpp.
 
 /// Returns the scenes that have curves.
 const scenesOfCurves = (sweep) => [...new Set(sweep.curves.sets[0].curves.map(({ scene }) => scene))];
@@ -27,13 +27,13 @@ function commandOn(name, folder) {
   return element("code", {}, foreign(`palpate ${name} ${word}`));
 }
 
-/// Returns a section on how to get curves; nothing if the page cannot have them.
+/// Returns a section that explains how to get curves. Returns nothing if the page cannot have curves.
 function noCurves(sweep) {
   if (sweep.live !== undefined || sweep.sampled || sweep.done.length === 0) return [];
   return [section(kOverTaps, element("p", { class: "sub", id: "how_to_curves" }, commandOn("curves", sweep.folder), " computes the errors after each tap from the record. Make this page again to show them."))];
 }
 
-/// Returns band and line of a group; `place` is its index among the groups of all scenes.
+/// Returns band and line of a group. `place` is the index of the group among the groups of all scenes.
 function curveTraces(curve, place, metric, against) {
   const [x, y] = [unitOf(against).factor, unitOf(metric).factor];
   const scaled = (values) => values.map((value) => (value === null ? null : value * y));
@@ -59,7 +59,7 @@ function drawCurves(sweep, { curve_of: metric, against, curves_by: by }) {
       const curves = set.curves.filter((one) => one.scene === scene);
       const traces = curves.flatMap((one) => curveTraces(one, names.indexOf(one.name), metric, against));
       const lines = curves.flatMap((one) => one.mean.filter((value) => value !== null).map((value) => value * unitOf(metric).factor));
-      // The axis stays near the lines, as bands of the first taps may be very wide.
+      // The axis covers the lines and only a part of wide bands, because bands of the first taps may be very wide.
       const [least, most] = extent(lines);
       const room = Math.max(most - least, 1e-12);
       const highest = extent(traces.flatMap(({ y }) => y.filter((value) => value !== null)))[1];

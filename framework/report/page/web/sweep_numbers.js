@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: MIT
-// Data of the panels on a sweep's page: columns, groups, means, the front.
+// Data for the panels on the page of a sweep: columns, groups, means, and the front.
 
-/// Returns text on one line with at most `most` letters.
+/// Returns text on one line, with at most `most` letters.
 function brief(text, most = 36) {
   const letters = Array.from(oneLine(text).replace(/\d*\.\d{5,}/g, (digits) => shown(Number(digits))));
   return letters.length > most ? `${letters.slice(0, most - 1).join("")}…` : letters.join("");
 }
 
-/// Returns brief names that differ: shortened at their ends, or in the middle, or with a number before them.
+/// Returns short names that differ from each other. They are shortened at their ends or in the middle, or have a number
+/// in front.
 function briefs(names, most = 36) {
   const alike = (texts) => new Set(texts).size < new Set(names).size;
   const ends = names.map((name) => brief(name, most));
@@ -25,7 +26,7 @@ const kStates = ["done", "failed", "running", "unfinished", "missing"];
 /// The data of a sweep, as panels read it.
 class SweepData {
   constructor(data) {
-    Object.assign(this, data);  // jobs, keys, first_looks, tally
+    Object.assign(this, data);  // The data has jobs, keys, first_looks and tally.
     this.sampled = this.tally.step > 1 ? this.tally : null;
     this.jobs.forEach((job, place) => Object.assign(job, { place }));
     [this.done, this.failed] = ["done", "failed"].map((state) => this.jobs.filter((job) => job.state === state));
@@ -63,18 +64,18 @@ class SweepData {
     return jobs.map((job) => this.number(column, job)).filter((value) => value !== null);
   }
 
-  /// Returns the unit of statistics of a job, as a number (JobUnits in analysis/groups.hpp).
+  /// Returns the number of a job's unit of statistics (JobUnits in analysis/groups.hpp).
   unit(job) {
     return this.units_of_jobs[job.place];
   }
 
-  /// Returns "20 seeds"; if the seed is not swept, "12 units, copies count once" for jobs with copies, else "".
+  /// Returns "20 seeds". If the seed is not swept, returns "12 units, copies count once" for jobs with copies, else "".
   unitWords(clusters, jobs) {
     if (this.seeds) return counted(clusters, "seed");
     return clusters < jobs ? `${counted(clusters, "unit")}, copies count once` : "";
   }
 
-  /// Returns the value of a key as written, or a dash if the job's plugins lack the option.
+  /// Returns the value of a key as written. Returns a dash if the job's plugins do not have the option.
   text(key, job) {
     return key.values[key.of_job[job.place]] || kNothing;
   }
@@ -85,7 +86,7 @@ class SweepData {
     return said.map((key) => `${key.name}=${this.text(key, job)}`).join(", ") || "the only setting";
   }
 
-  /// Returns the scene of a job by the values of its keys; "" if the sweep has one scene.
+  /// Returns a text with the job's values of the scene keys; "" if the sweep has one scene.
   sceneOf(job) {
     return this.scene_keys.map((name) => this.text(this.key(name), job)).join(", ");
   }
@@ -95,7 +96,7 @@ class SweepData {
     return [...new Set(this.jobs.map((job) => this.sceneOf(job)))];
   }
 
-  /// Returns the groups of jobs with equal values of `keys`, sorted by these values: a list of {jobs, places}, where
+  /// Returns the groups of jobs with equal values of `keys`, sorted by these values, as a list of {jobs, places}.
   /// `places` are the indices of the values.
   groups(keys) {
     const found = new Map();
@@ -122,7 +123,8 @@ const meanOf = (values) => {
   return least === most ? least : values.reduce((sum, one) => sum + one / values.length, 0);
 };
 
-/// Returns mean, standard deviation (null for fewer than two values), number of values and number of their units.
+/// Returns mean, standard deviation, number of values, and number of their units. The standard deviation is null for
+/// fewer than two values.
 function spread(values, units) {
   const count = values.length;
   const mean = count > 0 ? meanOf(values) : null;
@@ -130,8 +132,8 @@ function spread(values, units) {
   return { count, clusters: new Set(units).size, mean, deviation: count > 1 ? Math.sqrt(squares / (count - 1)) : null };
 }
 
-/// Returns the mean of a column over the jobs of a setting and half the width of its 95 % interval (null for none),
-/// computed by the program. A setting with one job has the job's number.
+/// Returns the mean of a column over the jobs of a setting, and half the width of its 95 % interval (null for none).
+/// The program has computed both. A setting with one job has the job's number.
 function estimate(sweep, name, setting) {
   const { numbers, estimates } = sweep.columns.get(name);
   const { factor } = unitOf(name);
@@ -146,8 +148,8 @@ function estimate(sweep, name, setting) {
   return { count, clusters: count, mean: inUnit(mean), half: null };
 }
 
-/// Returns the settings of a scene (a name of sweep.scenes()) that have cost and error: {words, jobs, cost, error,
-/// complete, front}. The settings on the front come first; `front` counts them from 1 and is 0 for the others.
+/// Returns those settings of a scene (a name from sweep.scenes()) that have both cost and error: {words, jobs, cost,
+/// error, complete, front}. The settings on the front come first. `front` counts them from 1 and is 0 for all others.
 function settingsOf(sweep, { cost, error, scene }) {
   const keys = sweep.varying.filter((key) => !sweep.scene_keys.includes(key.name));
   const all = sweep.setting_jobs.map((places, i) => {
@@ -162,7 +164,7 @@ function settingsOf(sweep, { cost, error, scene }) {
   return [...front, ...all.filter((one) => ofScene(one) && one.front === 0 && one.cost.count > 0 && one.error.count > 0)];
 }
 
-/// Returns the headline columns that the page has, the most important first.
+/// Returns the main columns of results that the page has, with the most important one first.
 function mainColumns(sweep) {
   return sweep.first_looks.filter((name) => sweep.columns.has(name));
 }
@@ -173,7 +175,8 @@ function differs(sweep, name) {
   return values.some((value) => value !== values[0]);
 }
 
-/// Returns the first pair of keys whose cells are most completely filled; with fewer than two keys, those there are.
+/// Returns the first pair of keys for which the largest share of cells has values. If there are fewer than two keys,
+/// returns these.
 function bestPair(sweep) {
   const keys = sweep.varying;
   let best = [keys[0]?.name ?? sweep.keys[0]?.name ?? "", ""];

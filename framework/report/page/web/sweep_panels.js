@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
-// Panels of one number per job: cells, groups, lines across all keys. Each is drawn by a function of the sweep and the
-// reader's choices.
+// Panels with one number per job: cells, groups, and lines across all keys. One function draws each panel, from the
+// sweep and the choices of the page's reader.
 
-/// Returns an axis with room for its names.
+/// Returns an axis with enough space for its names.
 const roomyAxis = (title, more = {}) => axis(title, { automargin: true, ...more });
 
-/// Returns an axis with one place per value of a key, or per group; with many, only some have names.
+/// Returns an axis with one position per value of a key, or per group. If there are many positions, only some have
+/// names.
 function placesAxis(title, names, more = {}, most = 36, room = 25) {
   const texts = briefs(names, most);
   const step = Math.ceil(names.length / room);
@@ -29,7 +30,7 @@ function directedTitle(sweep, column) {
   return way ? `${titleOf(column)},${kNarrow.matches ? "<br>" : " "}${way}` : titleOf(column);
 }
 
-/// Draws into a figure of this height.
+/// Draws a plot into a figure of this height.
 function plotOfHeight(id, height, traces, more) {
   const place = document.getElementById(id);
   place.hidden = false;
@@ -37,7 +38,7 @@ function plotOfHeight(id, height, traces, more) {
   return plot(place, traces, { height, ...more });
 }
 
-/// Hides the plot of a figure; `words`, if any, replace its caption.
+/// Hides the plot of a figure. `words`, if any, replaces the caption.
 function plotNothing(id, words) {
   if (words) setCaption(id, foreign(words));
   const place = document.getElementById(id);
@@ -45,7 +46,7 @@ function plotNothing(id, words) {
   place.hidden = true;
 }
 
-/// Returns a text about a column that is the same in all jobs.
+/// Returns a text about a column that has the same value in all jobs.
 function constantWords(sweep, column) {
   const values = sweep.numbers(column, sweep.done);
   if (values.length === 0) return `No finished job has a value of ${column}.`;
@@ -56,7 +57,7 @@ function setCaption(id, ...text) {
   document.getElementById(id).closest("figure").querySelector("figcaption").replaceChildren(...text);
 }
 
-/// Draws means and spreads of the jobs with equal values of one or two keys.
+/// Draws means and standard deviations of the jobs with equal values of one or two keys.
 function drawCells(sweep, { across, up, metric }) {
   const keys = [across, up].filter((name, i, all) => name && all.indexOf(name) === i).map((name) => sweep.key(name));
   const hover = (jobs, { count, clusters, mean, deviation }) => {
@@ -82,7 +83,7 @@ function drawCells(sweep, { across, up, metric }) {
 /// Returns whether any cell has two values.
 const hasSpread = (cells) => cells.some((one) => one.deviation !== null);
 
-/// With one key, draws means as points with bars for the spread.
+/// With one key, draws means as points. Bars show the standard deviations.
 function drawPoints(sweep, key, metric, cells, over) {
   const trace = points("", cells.map((one) => one.column), cells.map((one) => one.mean), cells.map((one) => one.hover), { size: 9, color: lineColour(0) }, {
     error_y: { type: "data", array: cells.map((one) => one.deviation ?? 0), color: themed("bars"), thickness: 2 },
@@ -91,10 +92,10 @@ function drawPoints(sweep, key, metric, cells, over) {
   return plotOfHeight("cells_mean", 380, [trace], { xaxis: keyAxis(key), yaxis: roomyAxis(directedTitle(sweep, metric)) });
 }
 
-/// With two keys, draws means as cells of a map, and the spread as a second map.
+/// With two keys, draws means as cells of a map, and the standard deviations as a second map.
 function drawMaps(sweep, [across, up], metric, cells, over) {
   const count = across.values.length * up.values.length;
-  // Continuous keys have many, mostly empty cells, so a square marks each filled one.
+  // Continuous keys have many cells, of which most are empty. A square therefore marks each filled cell.
   const sparse = count > 400 && cells.filter((one) => one.mean !== null).length < count / 8;
   const trace = (get, title, colorscale) => {
     const colours = { colorscale, colorbar: colourBar(title) };
@@ -132,7 +133,7 @@ function drawMaps(sweep, [across, up], metric, cells, over) {
   ]);
 }
 
-/// Returns a horizontal box of some jobs' values at place `i`.
+/// Returns a horizontal box of the values of some jobs, at position `i`.
 function boxTrace(sweep, metric, jobs, i, colour, withPoints) {
   const valued = jobs.filter((job) => job.state === "done" && sweep.raw(metric, job) !== null);
   return {
@@ -154,7 +155,7 @@ function boxTrace(sweep, metric, jobs, i, colour, withPoints) {
   };
 }
 
-/// Draws a box per group, with the jobs as points.
+/// Draws one box per group, with the jobs as points.
 function drawGroups(sweep, { group, then, metric }) {
   const kMostGroups = 40;
   const kMostPoints = 4000;
@@ -183,7 +184,7 @@ function drawGroups(sweep, { group, then, metric }) {
   });
 }
 
-/// Returns the jobs with a value on each axis, and the axes of keys and main numbers: {title, values, least, most,
+/// Returns the jobs that have a value on each axis, and the axes of keys and main numbers: {title, values, least, most,
 /// ticks: [{at, text}]}.
 function parallelAxes(sweep, metric) {
   const kMostJobs = 20000;
@@ -206,7 +207,7 @@ function parallelAxes(sweep, metric) {
   return { axes: [...ofKeys, ...ofColumns], jobs, left: sweep.done.length - valued.length, step };
 }
 
-/// Draws a line per job across the keys and the main numbers.
+/// Draws one line per job across the keys and the main numbers.
 function drawParallel(sweep, { metric }) {
   if (!hasWebGL()) return plotNothing("parallel", "This browser has no WebGL, which this plot needs.");
   const { axes, jobs, left, step } = parallelAxes(sweep, metric);
@@ -218,7 +219,7 @@ function drawParallel(sweep, { metric }) {
     left > 0 ? ` ${left} jobs lack one of the values and are left out.` : "",
     step > 1 ? ` One of ${step} jobs is drawn.` : "",
   );
-  document.getElementById("parallel").style.minWidth = `${90 * axes.length}px`; // on a narrow page it scrolls
+  document.getElementById("parallel").style.minWidth = `${90 * axes.length}px`; // On a narrow page, the plot scrolls.
   if (jobs.length === 0) return plotNothing("parallel");
   if (axes.every((one) => one.least === one.most)) return plotNothing("parallel", "All finished jobs have equal values.");
   const { least, most, title } = axes[axes.length - 1];
@@ -234,7 +235,7 @@ function drawParallel(sweep, { metric }) {
       ...(least === 0 && ticks.every(({ at }) => Number.isInteger(at)) ? { tickvals: ticks.map(({ at }) => at), ticktext: ticks.map(({ text }) => text) } : {}),
     })),
     labelfont: { size: 11 },
-    labelangle: -16,  // keeps names side by side from overlapping
+    labelangle: -16,  // The angle keeps neighbouring names from overlapping.
   };
   return plotOfHeight("parallel", 460, [trace], { margin: { l: 90, r: 60, t: 80, b: 24 } });
 }

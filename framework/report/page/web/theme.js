@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-// Light or dark theme: the system's, until the reader switches. style.css defines the colours of both by name; plots
-// use them, too.
+// Light or dark theme. The page follows the system until the reader chooses a theme. style.css defines the named
+// colours of both themes, which plots also use.
 
 const kThemeKey = "palpate-theme";
 const kSystemDark = matchMedia("(prefers-color-scheme: dark)");
 
-/// Returns the theme that the reader chose on an earlier page, "light" or "dark"; null if there is none, or if the
-/// browser stores nothing.
+/// Returns the theme that the reader chose on an earlier page, "light" or "dark". Returns null if there is none, or if
+/// the browser stores nothing.
 function rememberedTheme() {
   try {
     return localStorage.getItem(kThemeKey);
@@ -15,20 +15,21 @@ function rememberedTheme() {
   }
 }
 
-/// Stores the choice for all pages; null removes it. Without storage the choice holds while the page is open.
+/// Stores the chosen theme for all pages; null removes it. If the browser stores nothing, the choice holds while the
+/// page is open.
 function rememberTheme(theme) {
   try {
     if (theme) localStorage.setItem(kThemeKey, theme);
     else localStorage.removeItem(kThemeKey);
   } catch {
-    // Only the memory of the choice is lost.
+    // Without storage, only later pages lack the choice.
   }
 }
 
 /// Returns the shown theme, "light" or "dark".
 const theme = () => document.documentElement.dataset.theme ?? (kSystemDark.matches ? "dark" : "light");
 
-/// Sets the theme; null follows the system.
+/// Sets the theme. null stands for the theme of the system.
 function setTheme(chosen) {
   if (chosen) document.documentElement.dataset.theme = chosen;
   else delete document.documentElement.dataset.theme;
@@ -43,7 +44,8 @@ function themed(name) {
 
 const lineColour = (i) => kColours.lines[theme()][i % kColours.lines.light.length];
 
-/// Returns the switch. `redraw` is called after every change of colours, by the switch or by the system.
+/// Returns the button that switches the theme. `redraw` is called after every change of colours, by the button or by
+/// the system.
 function themeSwitch(redraw) {
   const other = () => (theme() === "dark" ? "light" : "dark");
   const button = document.createElement("button");
@@ -54,7 +56,7 @@ function themeSwitch(redraw) {
     redraw();
   };
   button.addEventListener("click", () => {
-    // A choice equal to the system's theme is not stored, so the page follows the system again.
+    // A choice that equals the system's theme is not stored, so that the page follows the system again.
     const chosen = (other() === "dark") === kSystemDark.matches ? null : other();
     rememberTheme(chosen);
     setTheme(chosen);
