@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Means with their intervals as text and as fields of rows. Numbers in texts have the format of config/scale.hpp.
+// Means with their intervals as text and as fields of rows. Numbers in texts have the format of
+// config/display_units.hpp.
 #pragma once
 
 #include "analysis/column.hpp"

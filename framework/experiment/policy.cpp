@@ -110,7 +110,7 @@ std::vector<int> initial_design(const InitialOptions& options, const CandidateGr
   const auto count = static_cast<std::size_t>(options.count);
   Random random(seed, "initial");
   using Design = InitialOptions::Design;
-  if (options.design == Design::search) return {};  // chosen one at a time: see Search
+  if (options.design == Design::search) return {};  // chosen one at a time: see SearchDesign
   if (options.design == Design::random) return draw_random(static_cast<int>(count), candidates.size(), random);
   std::vector<int> design = options.design == Design::sobol ? draw_sobol(count, candidates, area, random)
                                                             : draw_lattice(count, candidates, area);

@@ -102,13 +102,8 @@ int SearchDesign::next(const Allowed& allowed) {
   return best;
 }
 
-<<<<<<< HEAD:framework/experiment/search_design.cpp
 void SearchDesign::weigh(const Disc& disc, int weight) {
   // A disc cuts a row of candidates in one piece.
-=======
-void Search::weigh(const Disc& disc, int weight) {
-  // A disc covers one contiguous interval of each row of candidates.
->>>>>>> 0d5bcdc24915db9ae1929e1b4106b0430ec29481:framework/experiment/search.cpp
   const double across = step_of(candidates_.xs);
   const double along = step_of(candidates_.ys);
   const Span rows(disc.y - disc.radius, disc.y + disc.radius, candidates_.ys(0), along, candidates_.rows);

@@ -25,13 +25,8 @@ namespace palpate {
 /// to the middle, which most large objects cover. Discs also suffice for boxes and rods: rectangles of all angles and
 /// proportions find none of them sooner, up to the noise of 1000 placements.
 ///
-<<<<<<< HEAD:framework/experiment/search_design.hpp
 /// Whoever misses in the same places is sent to the same next one: its state is the seed and the places looked at.
 class SearchDesign {
-=======
-/// The next position depends only on the seed and on the positions tapped so far.
-class Search {
->>>>>>> 0d5bcdc24915db9ae1929e1b4106b0430ec29481:framework/experiment/search.hpp
  public:
   /// `smallest`: metres, above 0 and below both sides of the area. `candidates` form a grid and outlive the search.
   SearchDesign(double smallest, const CandidateGrid& candidates, const Area& area, Random random);

@@ -35,10 +35,10 @@ inline constexpr const char* kCaller = "caller";
 /// The maker of the taps of a run: its backend, or the calling program.
 enum class Taps { by_backend, by_caller };
 
-/// Names of files that an ended run had lost.
+/// The files that were missing in the directory of an ended run, by name.
 struct RestoredFiles {
-  std::vector<std::string> made;  ///< again, byte for byte
-  std::vector<std::string> lost;  ///< left out: this build makes others from the same taps
+  std::vector<std::string> made;  ///< files made again, byte for byte
+  std::vector<std::string> lost;  ///< files not made again, because this build makes different ones from the same taps
 };
 
 /// How a run ended.
@@ -97,8 +97,8 @@ class Run {
   /// when the run is finished.
   const TapRecord* ask(const Eigen::VectorXd* scores);
   /// Records the result of the pending tap. Throws Error of kind `usage`, and records nothing, for a value that no arm
-  /// can have measured (see answers/answer.hpp; `hover` and `overrun` of the backend bound the heights). If the run
-  /// cannot continue, finishes it and throws Error of kind `run`.
+  /// can have measured (see answers/tap_result_checks.hpp; `hover` and `overrun` of the backend bound the heights). If
+  /// the run cannot continue, finishes it and throws Error of kind `run`.
   void tell(TapResult result);
   /// Whether ask() has returned a tap for which tell() has not been called yet.
   bool is_pending() const { return tap_.has_value(); }
@@ -163,8 +163,8 @@ std::shared_ptr<Backend> no_backend(bool truth_known);
 std::optional<Error> objection_to_build(const RunEnvironment& environment, const ResolvedConfig& config,
                                         const RunRecord& record);
 
-/// Makes those files again that an ended run in a directory that this process holds has lost: a kill came between its
-/// last line and summary.json, or a power cut took what was never synced. Throws Error.
+/// Restores missing files of an ended run in a directory that this process holds. Files are missing after a kill
+/// between the last line and summary.json, or after a power failure before a sync. Throws Error.
 RestoredFiles restore_files(const RunEnvironment& environment, RunDirectory& held);
 
 }  // namespace palpate

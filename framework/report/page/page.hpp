@@ -25,7 +25,7 @@ enum class PageOf { file, server };
 std::string make_page(std::string_view script, const Json& data, const std::string& maps, PageOf of = PageOf::file);
 
 /// Returns the unit in which pages show each column, as {unit, factor}: a value in SI times `factor` is in `unit`. The
-/// units are those of config/scale.hpp, and megabytes for sizes in bytes. Columns without a unit are left out.
+/// units are those of config/display_units.hpp, and megabytes for sizes in bytes. Columns without a unit are left out.
 Json display_units(const std::vector<std::string>& columns);
 
 /// Returns the data as JSON on one line.

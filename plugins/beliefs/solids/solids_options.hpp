@@ -16,7 +16,7 @@ struct ResidualOptions : Options {
   void list(Fields& fields) override;
 };
 
-/// A camera's view before the first tap, see solids/view.hpp.
+/// A camera's view before the first tap, see solids/camera_rays.hpp.
 struct SideViewOptions : Options {
   std::optional<double> azimuth;  ///< radians; absent: drawn from the seed
   double elevation = 35.0 / 180.0 * 3.14159265358979323846;
