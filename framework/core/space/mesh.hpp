@@ -48,7 +48,7 @@ struct Crossings {
 /// Of the composition as `skin`, which was fitted to it, corrects it. Cubes of `side`, or, where there would be more
 /// than four million, as of 2 mm over what is 31 cm wide, long and high, larger ones: Crossings::side. A wall that is
 /// thinner may have holes, whose rims are closed, too. Normals are those of f; where f jumps, as at the edges of
-/// pieces, those of the composition. The deviations are left to SpaceBelief, which knows all compositions.
+/// pieces, those of the composition. The deviations are left to SolidsBelief, which knows all compositions.
 Crossings cross_surface(const Composition& solids, const Skin& skin, double side);
 
 /// Triangles counter-clockwise seen from outside. Rings that could share a diagonal with those of the next cube have a

@@ -111,8 +111,8 @@ struct ShownErrors {
 /// Returns for each line whether the backend can tap along it.
 using LineFilter = std::function<void(const Candidates& lines, BoolOut out)>;
 
-/// Laws, checked by the contract tests for every belief: the same plan, stages and taps give the same bytes, on any
-/// number of threads. infer(), surface(), errors() and all reading change no later value. Random numbers come from
+/// Laws of every belief: the same plan, stages and taps give the same bytes, on any number of threads. infer(),
+/// surface(), errors() and all reading change no later value. Random numbers come from
 /// Context::random() alone. Numerical trouble is counted in state(). infer() throws Error for values that are not
 /// finite.
 class Belief : public BeliefView {
