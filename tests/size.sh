@@ -22,16 +22,16 @@ framework/cli 3540 60 # one file per command, with its arguments
 framework/cmake 0 220 # packages of a cross build
 framework/config 3170 0
 framework/experiment 1545 0
-framework/gp 2438 0 # parts of the GP and of the outlier model in files of their own
+framework/gp 2580 0 # the offset model; checks of maps for finite numbers
 framework/host 827 0
-framework/include 985 0 # beliefs, lines and named quantities
+framework/include 1125 0 # beliefs as plugins: grids of taps, settings of the run, phases
 framework/launch 956 0 # a table of launchers
-framework/python 742 625 # one file per class of the module; lines of any direction
+framework/python 750 625 # one file per class of the module; lines of any direction
 framework/record 4641 0
 framework/report 5822 97 # facts of pages are computed in C++
 framework/scene 749 0
-framework/shared 1376 0
-plugins/beliefs 3060 0
+framework/shared 1392 0 # counts of factorisations for beliefs
+plugins/beliefs 3060 9 # the belief solids
 framework/sweep 1839 0 # pooled records in files of their own
 framework/watch 714 0
 plugins 33 78
@@ -42,13 +42,13 @@ plugins/footprints 2422 15 # each folder builds itself
 plugins/kernels 547 9 # each folder builds itself
 plugins/programs 520 14 # each folder builds itself
 plugins/shapes 2026 28 # each folder builds itself
-plugins/starters 203 28
-tests 0 1874 # reasons for counts of instructions, campaigns by name, checks of packages for ARM
+plugins/starters 280 28 # a belief without a GP
+tests 0 1980 # reasons for counts of instructions, campaigns by name, checks of packages for ARM, sizes of classes
 tests/bad_plugins 447 49
 tests/baxter 5676 0
 tests/benchmark 1071 857
 tests/consumer 165 0
-tests/contract 1280 0
+tests/contract 1505 0 # laws of beliefs
 tests/crash 414 434
 tests/fake_baxter 2425 47
 tests/fuzz 380 0
@@ -58,8 +58,8 @@ tests/slurm 483 0
 tests/stability 2435 0
 tests/support 2266 0 # the simulator as a program of the backend process
 tests/sweep 4085 0
-tests/system 9156 0 # lines of any direction for programs and records
-tests/unit 17322 0 # oracles of the footprint: pushes, calibration, enumeration, joint distribution
+tests/system 9260 0 # lines of any direction for programs and records; beliefs
+tests/unit 17330 0 # oracles of the footprint: pushes, calibration, enumeration, joint distribution
 tests/ur_rtde 0 230
 tests/versions 50 17
 '

@@ -79,7 +79,7 @@ set(CPACK_DEBIAN_PROGRAM_PACKAGE_SUGGESTS "palpate-dev, python3-palpate, palpate
 
 debian_package(dev palpate-dev libdevel "experiments in active touch - to build plugins with
 Headers, a static library of elementary functions, and the CMake package for
-plugins of palpate: kernels, acquisitions, fittings, footprints, backends and
+plugins of palpate: kernels, acquisitions, fittings, footprints, beliefs, backends and
 shapes.")
 set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS
     "palpate ${same_version}, libeigen3-dev (>= 3.4), cmake (>= 3.25), ninja-build | make")
