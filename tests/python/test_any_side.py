@@ -14,7 +14,7 @@ import palpate
 from support import BUILD, CONFIGS, FolderTest
 
 ANY_SIDE = CONFIGS / "any_side.yaml"
-FEW = ("scene=any_bowl", "space.approaches=200", "space.moves=50")
+FEW = ("scene=any_bowl", "candidates.count=200", "belief.moves=50")
 LONG = os.environ.get("PALPATE_LONG")
 
 
