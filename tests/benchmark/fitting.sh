@@ -15,7 +15,7 @@ echo "|---|---|---|---|---|---|---|---|---|---|---|"
 awk -F, '
   NR == 1 { for (i = 1; i <= NF; ++i) at[$i] = i; next }
   {
-    group = $at["scene"] " | " $at["surface"] " | " $at["taps"]
+    group = $at["scene"] " | " $at["belief.surface"] " | " $at["taps"]
     if (!(group in seen)) { seen[group] = 1; order[++groups] = group }
     key = group SUBSEP $at["seed"] SUBSEP $at["fitting"]
     nlpd[key] = $at["nlpd"]; rmse[key] = 100 * $at["rmse_m"]; coverage[key] = 100 * $at["coverage_95"]
