@@ -144,7 +144,7 @@ TEST_P(BeliefContract, GivesOneFiniteNumberPerCandidate) {
       EXPECT_EQ(values.size(), one.belief().candidates().size()) << quantity.name << " after tap " << taps;
       EXPECT_TRUE(values.allFinite()) << quantity.name << " after tap " << taps;
       const bool is_share = quantity.name == quantity::kUncertainty || quantity.name == quantity::kObjectProbability;
-      if (is_share) EXPECT_TRUE((values.array() >= 0.0 && values.array() <= 1.0).all()) << quantity.name;
+      EXPECT_TRUE(!is_share || (values.array() >= 0.0 && values.array() <= 1.0).all()) << quantity.name;
     }
     EXPECT_GT(arrays, 0) << "after tap " << taps;
   }
