@@ -91,7 +91,7 @@ class Believer {
   }
 
   void tap_some(int count) {
-    for (int i = 0; i < count; ++i) tap(7 * i + 4);
+    for (int i = 0; i < count; ++i) tap(Eigen::Index{7} * i + 4);
   }
 
   /// Returns all that a reader may see, as text.
@@ -135,7 +135,7 @@ TEST_P(BeliefContract, OffersEachQuantityOnceWithItsMeaning) {
 TEST_P(BeliefContract, GivesOneFiniteNumberPerCandidate) {
   Believer one(GetParam());
   for (int taps = 0; taps <= 5; ++taps) {
-    if (taps > 0) one.tap(11 * taps);
+    if (taps > 0) one.tap(11 * Eigen::Index{taps});
     int arrays = 0;
     for (const Quantity& quantity : one.belief().offers()) {
       if (!is_array(one.belief(), quantity.name)) continue;
@@ -179,7 +179,7 @@ TEST_P(BeliefContract, IsChangedByNoReader) {
     const auto [request, result] = read.tapped(3);
     read.belief().read(request, result);
     read.look();
-    for (Believer* each : {&read, &unread}) each->tap(5 * i + 2);
+    for (Believer* each : {&read, &unread}) each->tap(Eigen::Index{5} * i + 2);
   }
   EXPECT_EQ(read.seen(), unread.seen());
 }
