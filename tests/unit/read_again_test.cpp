@@ -87,8 +87,9 @@ TEST(ReadAgain, TheModelsAreThoseOfLabelsThatWereReadSoAtOnce) {
     late.build(kAll);
     EXPECT_EQ(soon.models.probability(), late.models.probability());
     EXPECT_EQ(soon.models.label_map().weight(), late.models.label_map().weight());
-    if (const auto& surface = soon.models.surface(); surface && surface->outliers() != nullptr)
+    if (const auto& surface = soon.models.surface(); surface && surface->outliers() != nullptr) {
       EXPECT_EQ(surface->outliers()->probabilities(), late.models.surface()->outliers()->probabilities());
+    }
     if (words.size() < 3) {  // of a fit the heights, whose process is not made anew, remember what they were then
       EXPECT_LT((soon.models.height_mean() - late.models.height_mean()).cwiseAbs().maxCoeff(), 1e-12);
       EXPECT_LT((soon.models.height_variance() - late.models.height_variance()).cwiseAbs().maxCoeff(), 1e-12);
@@ -137,7 +138,8 @@ TEST(Outliers, KeepTheirProbabilitiesAfterAHundredContactsOnAnObjectAndLaterCont
   constexpr std::size_t kLate = 110;
   Eigen::VectorXd early;
   for (std::size_t i = 0; i < 120; ++i) {
-    const Target place{0.02 + 0.015 * static_cast<double>(i % 12), 0.02 + 0.018 * static_cast<double>(i / 12)};
+    const std::size_t row = i / 12;
+    const Target place{0.02 + 0.015 * static_cast<double>(i % 12), 0.02 + 0.018 * static_cast<double>(row)};
     one.tap(place, i == kEarly || i == kLate ? 0.10 : 0.05);
     if (i != 99) continue;
     one.update();
