@@ -56,8 +56,11 @@ MapReader::MapReader(const Tree& input, std::string path, ResolveNotes& notes, P
 Tree MapReader::finish(const std::vector<std::string>& elsewhere) {
   for (const Tree::Entry& entry : input_.entries) {
     if (silent_ || is_known(entry.key)) continue;
-    Layer highest = entry.value.layer;  // the latest source of any part of the value
-    for_all(entry.value, [&](const Tree& one) { highest = std::max(highest, one.layer); });
+    Layer highest = std::numeric_limits<Layer>::min();  // the latest source of any part of the value
+    for_all(entry.value, [&](const Tree& one) {
+      // The layer of a group is not that of its values: composition may have made the group.
+      if (!one.is_map() || one.entries.empty()) highest = std::max(highest, one.layer);
+    });
     if (highest < type_layer_) {
       notes_.dropped.push_back({path_of(entry.key), entry.value.place.text()});
       continue;

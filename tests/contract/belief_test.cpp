@@ -255,7 +255,7 @@ TEST_P(BeliefContract, RefusesANameThatNobodyOffers) {
   EXPECT_EQ(one.belief().available().count("nothing_of_this_name"), 0U);
 }
 
-INSTANTIATE_TEST_SUITE_P(All, BeliefContract, testing::ValuesIn(belief_cases()),
+INSTANTIATE_TEST_SUITE_P(Every, BeliefContract, testing::ValuesIn(belief_cases()),
                          [](const auto& one) { return one.param.name; });
 
 }  // namespace

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The two groups that are more than one option: a strategy, and a set of effects.
+#include "support/runs.hpp"
 #include "unit/compose_fixture.hpp"
 
 namespace palpate::test {
@@ -124,6 +125,17 @@ TEST_F(ComposeStrategy, AMotionThatABackendReplacesIsNoLongerAGroupOfTheConfig) 
   std::vector<std::string> paths;
   for (const Composer::Group& one : composer.groups()) paths.push_back(one.path);
   EXPECT_EQ(paths, std::vector<std::string>{"backend"});
+}
+
+TEST(ComposedStrategy, LeavesNoOptionOfItsBeliefToTheBeliefThatTheConfigNames) {
+  const TemporaryFolder folder;
+  const auto file = folder.write("c.yaml",
+                                 "strategy: uncertainty\nscene: object_i\nbackend: simulator\n"
+                                 "belief: {type: nearest_neighbour, reach: 3 cm}\n");
+  Composer composer(source_folder() / "configs", config_keys());
+  const ResolvedConfig config = resolve_experiment(composer.compose(file, {}), shared_host());
+  EXPECT_EQ(config.options.belief.type, "nearest_neighbour");
+  EXPECT_EQ(belief_option(config.options, "footprint.type"), "");
 }
 
 TEST_F(ComposeStrategy, IsTheOneOfItsFolderEvenForAConfigOfThatName) {
