@@ -347,20 +347,15 @@ Tree Composer::compose(const fs::path& named, const std::vector<Override>& overr
   Layer layer = kGroupLayer;
   std::vector<std::string> chain;
   if (lay_strategy(tree, choices, beside_, layer, chain) >= kSweepLayer) {
-    drop(choices, [&](const Choice& one) {
-      const std::string key = first_key(one.path);
-      const Tree* const group = tree.find(key);
-      if (group == nullptr || !keys_.is_typed(key) || key == one.path)
-        return group != nullptr && one.value.layer < kSweepLayer;
-      return one.value.layer < kSweepLayer && group->find(first_key(one.path.substr(key.size() + 1))) != nullptr;
-    });
-    for (const Tree::Entry& entry : tree.entries) {
-      Tree& group = own.at(entry.key);
-      if (!keys_.is_typed(entry.key) || !group.is_map()) {
+    drop(choices, [&](const Choice& one) { return one.value.layer < kSweepLayer && is_replaced(one.path, own, tree); });
+    const Tree before = own;
+    for (const Tree::Entry& entry : before.entries) {
+      if (is_replaced(entry.key, before, tree)) {
         own.erase(entry.key);
-        continue;
+      } else if (keys_.is_typed(entry.key)) {
+        drop(own.at(entry.key).entries,
+             [&](const Tree::Entry& part) { return is_replaced(entry.key + "." + part.key, before, tree); });
       }
-      for (const Tree::Entry& part : entry.value.entries) group.erase(part.key);
     }
   }
   lay_groups(tree, choices, beside_, layer);
@@ -372,6 +367,20 @@ Tree Composer::compose(const fs::path& named, const std::vector<Override>& overr
   for (const Override& one : overrides) lay_override(tree, one);
   inherit_shared(tree, keys_);
   return tree;
+}
+
+bool Composer::is_replaced(const std::string& path, const Tree& own, const Tree& strategy) const {
+  const std::string key = first_key(path);
+  const Tree* const replacing = strategy.find(key);
+  if (replacing == nullptr) return false;
+  const Tree* const replaced = own.find(key);
+  if (!keys_.is_typed(key) || (replaced != nullptr && !replaced->is_map())) return true;
+  const auto type_of = [&](const Tree* plugin) {
+    const Tree* const type = plugin != nullptr ? plugin->find("type") : nullptr;
+    return type != nullptr ? type->text : keys_.default_type(key);
+  };
+  if (type_of(replaced) != type_of(replacing)) return true;
+  return path != key && replacing->find(first_key(path.substr(key.size() + 1))) != nullptr;
 }
 
 void Composer::lay_override(Tree& tree, const Override& one) {

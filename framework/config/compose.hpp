@@ -35,7 +35,7 @@ void mark_complete(Tree& config);
 /// The group `strategy` is not an option. Its file is a whole config, in strategy/ or in the folder of the config
 /// itself. So each whole config is also a strategy. It may set all keys of the strategy, which decide the choice of
 /// taps and the models. A strategy in the config ranks below the groups of the config. A strategy as an override
-/// replaces each top-level key that it has.
+/// replaces each top-level key that it has. Of a belief of the same type it replaces only the options that it has.
 ///
 /// The file of a strategy may contain keys of the run (Field::of_run()), but they are ignored. The only exception is a
 /// motion given as a map (`motion: {...}`), not as a name. This motion is used only if neither a group nor the config
@@ -88,6 +88,8 @@ class Composer {
   /// Removes the strategy from `choices`, if there is one, and merges it into `tree`. Returns the layer of its name.
   Layer lay_strategy(Tree& tree, std::vector<Choice>& choices, const std::filesystem::path& beside, Layer& layer,
                      std::vector<std::string>& chain);
+  /// Returns whether a strategy as an override replaces the value at `path` of the config's file, `own`.
+  bool is_replaced(const std::string& path, const Tree& own, const Tree& strategy) const;
   void lay_override(Tree& tree, const Override& one);
   /// Merges a plugin within another plugin, for example an item of a list, into the otherwise complete tree.
   void choose_inner(Tree& tree, const Choice& choice, const std::filesystem::path& beside);

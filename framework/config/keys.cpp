@@ -29,7 +29,7 @@ class ConfigKeys::Reader final : public Fields {
   void text(std::string&, const Field& field) override { note(field); }
   void choice(std::size_t&, const Field& field, const std::vector<Case>&) override { note(field); }
   void sections(const ListAccess&, const Field& field) override { note(field); }
-  void plugin(PluginChoice& choice, const Field& field) override { note_plugin(choice.kind, field); }
+  void plugin(PluginChoice& choice, const Field& field) override { note_plugin(choice.kind, field, choice.type); }
   void plugin(std::optional<PluginChoice>&, const char* kind, const Field& field) override { note_plugin(kind, field); }
   void plugins(std::vector<PluginChoice>&, const char* kind, const Field& field) override { note_plugin(kind, field); }
   void adopt(PluginChoice& choice, const Field& field) override { note_plugin(choice.kind, field); }
@@ -52,10 +52,10 @@ class ConfigKeys::Reader final : public Fields {
     if (path_.empty()) note_owner(field);
     if (*field.heir_of != '\0') keys_.heirs_.emplace_back(path_ + field.name, field.heir_of);
   }
-  void note_plugin(const std::string& kind, const Field& field) {
+  void note_plugin(const std::string& kind, const Field& field, const std::string& type = "") {
     note(field);
     if (field.is_group) keys_.plugins_.insert(kind);
-    if (!field.is_group && path_.empty()) keys_.typed_.insert(field.name);
+    if (!field.is_group && path_.empty()) keys_.typed_.emplace(field.name, type);
   }
   void note_owner(const Field& field) {
     const std::string name = field.name;
@@ -79,6 +79,11 @@ bool ConfigKeys::is_group(const std::string& path) const {
 }
 
 bool ConfigKeys::is_plugin(const std::string& path) const { return plugins_.count(last_key(path)) > 0; }
+
+std::string ConfigKeys::default_type(const std::string& key) const {
+  const auto found = typed_.find(key);
+  return found != typed_.end() ? found->second : std::string();
+}
 
 bool ConfigKeys::is_brought(const std::string& key) const {
   return std::any_of(beside_.begin(), beside_.end(), [&](const auto& one) { return one.second == key; });

@@ -30,6 +30,8 @@ class ConfigKeys {
   /// Returns whether a top-level key chooses a plugin without group files. A name there is a type, and its options are
   /// merged one by one.
   bool is_typed(const std::string& key) const { return typed_.count(key) > 0; }
+  /// Returns the type of a key for which is_typed() holds, in a config without a type there; "" for other keys.
+  std::string default_type(const std::string& key) const;
   /// Returns whether a group lies within another group, as scene.effects does.
   bool is_part(const std::string& path) const;
   /// Returns the paths that the field list declares as groups.
@@ -57,8 +59,8 @@ class ConfigKeys {
   class Reader;
 
   std::vector<std::string> groups_;
-  std::set<std::string> plugins_;  ///< names of plugin kinds that are groups
-  std::set<std::string> typed_;
+  std::set<std::string> plugins_;             ///< names of plugin kinds that are groups
+  std::map<std::string, std::string> typed_;  ///< default type by key
   std::set<std::string> of_run_;
   std::map<std::string, std::string> beside_;  ///< key next to a plugin, by the key of the plugin
   std::vector<std::pair<std::string, std::string>> heirs_;

@@ -57,6 +57,28 @@ TEST_F(ComposeStrategy, AsAnOverrideTakesThePlaceOfEveryKeyThatItHas) {
   EXPECT_EQ(value("strategy: bolder\n", "kernel.length_scale", bold), "4 cm");
 }
 
+TEST_F(ComposeStrategy, AsAnOverrideTakesThePlaceOfAWholeBeliefOfAnotherType) {
+  folder_.write("strategy/around.yaml", "belief: {type: solids, particles: 9}\n");
+  const std::string vertical = "defaults:\n  - belief.footprint: primitives\nbelief: {height: {noise: 6 mm}}\n";
+  EXPECT_EQ(value(vertical, "belief", {"strategy=around"}), of("{type: solids, particles: 9}"));
+  EXPECT_EQ(value("belief: {type: solids, moves: 7}\n", "belief", {"strategy=around"}),
+            of("{type: solids, particles: 9, moves: 7}"));
+  EXPECT_EQ(value("belief: {type: solids, moves: 7}\n", "belief", {"strategy=bold"}), of("{surface: two_part}"));
+  EXPECT_EQ(value("belief: solids\n", "belief", {"strategy=bold"}), of("{surface: two_part}"));
+}
+
+TEST(ComposedStrategy, MayReplaceTheBeliefOfEachShippedConfig) {
+  for (const char* const config : {"default", "any_side", "paper/object_i"}) {
+    for (const char* const strategy : {"default", "any_side", "grid", "random", "uncertainty", "weighted"}) {
+      Composer composer(source_folder() / "configs", config_keys());
+      const Tree tree = composer.compose(source_folder() / "configs" / (std::string(config) + ".yaml"),
+                                         {parse_override(std::string("strategy=") + strategy)});
+      const ResolvedConfig resolved = resolve_experiment(tree, shared_host());
+      EXPECT_EQ(resolved.options.belief.type, strategy == std::string("any_side") ? "solids" : "height_map") << config;
+    }
+  }
+}
+
 TEST_F(ComposeStrategy, GivesWayToWhatIsSaidBesideIt) {
   EXPECT_EQ(value("", "kernel.type", {"strategy=bold", "kernel=rbf"}), "rbf");
   EXPECT_EQ(value("", "kernel.length_scale", {"kernel.length_scale=2cm", "strategy=bold"}), "2cm");
