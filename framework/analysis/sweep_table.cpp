@@ -42,14 +42,15 @@ std::string spread(const std::vector<double>& values, const Scale& scale) {
                      scale.number(quantile(values, 0.9)));
 }
 
-SweepTableRow row_of(const JobGroup& group, const std::string& error,
-                     const std::function<std::optional<int>(std::size_t job)>& initial_taps) {
+SweepTableRow row_of(const JobGroup& group, const std::string& error, const InitialTaps& initial_taps) {
   SweepTableRow out;
   // Largest number of jobs whose configs are tried; more than one, because a config may be damaged.
   constexpr std::size_t kMostAsked = 3;
   std::optional<int> initial;  // number of initial taps, equal for all jobs of a group
-  for (std::size_t i = 0; i < std::min(kMostAsked, group.jobs.size()) && !initial; ++i)
-    initial = initial_taps(static_cast<std::size_t>(group.jobs[i].job->index));
+  for (std::size_t i = 0; i < std::min(kMostAsked, group.jobs.size()) && !initial; ++i) {
+    const auto& [job, row] = group.jobs[i];
+    if (row != nullptr) initial = initial_taps(static_cast<std::size_t>(job->index), *row);
+  }
   for (const auto& [job, row] : group.jobs) {
     if (row == nullptr) continue;
     ++out.runs;
@@ -110,8 +111,7 @@ Table table_of(const std::vector<SweepTableRow>& rows, const std::string& metric
 
 }  // namespace
 
-std::string sweep_table(const Sweep& sweep, const std::vector<Row>& results,
-                        const std::function<std::optional<int>(std::size_t job)>& initial_taps) {
+std::string sweep_table(const Sweep& sweep, const std::vector<Row>& results, const InitialTaps& initial_taps) {
   const std::vector<std::string> keys = varying_keys(sweep, setting_keys(sweep));
   const std::vector<std::string> scenes = scene_keys(sweep);
   std::map<std::string, std::size_t> places;

@@ -79,18 +79,18 @@ std::optional<ResolvedConfig> readable_config(const SweepExecution& execution, s
 enum class Launched { submitted, ended, ended_unrecorded, blocked };
 
 /// Returns the maximum number of initial taps of a job; nullopt if it depends on a camera's view. With a search, and
-/// from any side, all taps of a run may be initial taps.
-std::optional<int> initial_taps_of(const ExperimentOptions& options) {
+/// from any side, all taps of a run may be initial taps. `result`: result of the job.
+std::optional<int> initial_taps_of(const ExperimentOptions& options, const Row& result) {
   if (!belief_option(options, "view").empty()) return std::nullopt;
-  const bool from_above = options.belief.type == "height_map";
-  return static_cast<int>(options.initial.searches() || !from_above ? options.taps : options.initial.count);
+  const bool any_side = result.find("no_contact_taps") != nullptr;
+  return static_cast<int>(options.initial.searches() || any_side ? options.taps : options.initial.count);
 }
 
 int finish_whole(const SweepExecution& execution, const JobStates& end, bool interrupted, Launched launched) {
   const Sweep& sweep = execution.sweep;
-  const auto initial_taps = [&](std::size_t job) {
+  const auto initial_taps = [&](std::size_t job, const Row& result) {
     const auto config = readable_config(execution, job);
-    return config ? initial_taps_of(config->options) : std::nullopt;
+    return config ? initial_taps_of(config->options, result) : std::nullopt;
   };
   print_text(sweep_table(sweep, write_results(sweep), initial_taps));
   print_failures(sweep, end.failures);

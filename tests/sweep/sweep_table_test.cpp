@@ -36,7 +36,7 @@ std::string table_of(const std::vector<std::string>& keys, const std::vector<std
     row.add("footprint_iou", 0.8);
     results.push_back(std::move(row));
   }
-  return sweep_table(sweep, results, [](std::size_t) { return 3; });
+  return sweep_table(sweep, results, [](std::size_t, const Row&) { return 3; });
 }
 
 TEST(SweepTable, IsThisLetterByLetter) {
@@ -95,7 +95,7 @@ std::string table_of_seeds(const std::string& status, const std::optional<int>& 
     row.add("status", status);
     results.push_back(std::move(row));
   }
-  return sweep_table(sweep, results, [&](std::size_t) { return initial_taps; });
+  return sweep_table(sweep, results, [&](std::size_t, const Row&) { return initial_taps; });
 }
 
 TEST(SweepTable, HasNoSharesOfAGroupInWhichNoJobIsDone) {
