@@ -75,6 +75,22 @@ std::vector<WrittenBelief> surfaces() {
   return out;
 }
 
+/// Returns `all` with drawn values of those `quantities` that only beliefs of others offer.
+std::vector<WrittenBelief> with_foreign(std::vector<WrittenBelief> all, const QuantitySet& quantities) {
+  QuantitySet own{quantity::kHypotheses, quantity::kDeskPosition};
+  for (const WrittenBelief& one : {beliefs().front(), surfaces().front()}) {
+    for (const auto& [name, values] : one.arrays) own.insert(name);
+  }
+  Random random(6, "contract/foreign");
+  for (WrittenBelief& one : all) {
+    for (const std::string& name : quantities) {
+      if (own.count(name) != 0) continue;
+      one.arrays[name] = Eigen::VectorXd::NullaryExpr(one.lines.size(), [&] { return random.uniform(); });
+    }
+  }
+  return all;
+}
+
 /// Returns whether a belief offers these quantities; hypotheses and positions on the desk are of those from above.
 bool offers(const WrittenBelief& belief, const QuantitySet& quantities) {
   return std::all_of(quantities.begin(), quantities.end(), [&](const std::string& one) {
@@ -107,22 +123,23 @@ class AcquisitionContract : public testing::TestWithParam<std::string> {
  protected:
   void SetUp() override {
     acquisition_ = make<Acquisition>(contract_host(), GetParam());
-    from_above_ = offers(beliefs().front(), acquisition_->reads());
-    any_side_ = offers(surfaces().front(), acquisition_->reads());
+    beliefs_ = with_foreign(beliefs(), acquisition_->reads());
+    surfaces_ = with_foreign(surfaces(), acquisition_->reads());
+    from_above_ = offers(beliefs_.front(), acquisition_->reads());
+    any_side_ = offers(surfaces_.front(), acquisition_->reads());
   }
 
   /// Returns the beliefs that offer what it reads.
   std::vector<WrittenBelief> readable() const {
     std::vector<WrittenBelief> out;
-    if (from_above_) out = beliefs();
-    if (any_side_) {
-      for (const WrittenBelief& one : surfaces()) out.push_back(one);
-    }
+    if (from_above_) out = beliefs_;
+    if (any_side_) out.insert(out.end(), surfaces_.begin(), surfaces_.end());
     return out;
   }
 
   std::shared_ptr<Acquisition> acquisition_;
-  bool from_above_ = false, any_side_ = false;  ///< of the beliefs that offer what it reads
+  std::vector<WrittenBelief> beliefs_, surfaces_;  ///< with the quantities of others that it reads
+  bool from_above_ = false, any_side_ = false;     ///< of the beliefs that offer what it reads
 };
 
 TEST_P(AcquisitionContract, GivesEveryCandidateAFiniteScore) {
@@ -162,13 +179,12 @@ TEST_P(AcquisitionContract, HasAScale) {
 TEST_P(AcquisitionContract, FromAnySideIsFinitePureAndReadsWhatItSays) {
   EXPECT_TRUE(from_above_ || any_side_) << "no belief offers what it reads";
   if (!any_side_) return;
-  const std::vector<WrittenBelief> all = surfaces();
-  for (const WrittenBelief& belief : all) {
+  for (const WrittenBelief& belief : surfaces_) {
     const Eigen::VectorXd scores = score(*acquisition_, belief);
     EXPECT_TRUE(scores.allFinite());
     EXPECT_TRUE(same_bytes(score(*make<Acquisition>(contract_host(), GetParam()), belief), scores));
   }
-  EXPECT_THAT(read_of(*acquisition_, all), ::testing::ContainerEq(acquisition_->reads()))
+  EXPECT_THAT(read_of(*acquisition_, surfaces_), ::testing::ContainerEq(acquisition_->reads()))
       << "models that it does not read were built for it";
 }
 

@@ -253,6 +253,7 @@ TEST_P(BeliefContract, RefusesANameThatNobodyOffers) {
   Believer one(GetParam());
   EXPECT_FALSE(one.belief().scalar("nothing_of_this_name"));
   EXPECT_EQ(one.belief().available().count("nothing_of_this_name"), 0U);
+  EXPECT_ANY_THROW(one.belief().values("nothing_of_this_name"));
 }
 
 INSTANTIATE_TEST_SUITE_P(Every, BeliefContract, testing::ValuesIn(belief_cases()),

@@ -2,6 +2,9 @@
 #include <palpate/grid.hpp>
 #include <palpate/math.hpp>
 
+#include <stdexcept>
+#include <string>
+
 using namespace palpate;
 
 struct MyBeliefOptions : Options {
@@ -75,7 +78,8 @@ class MyBelief final : public Belief {
     if (quantity == quantity::kUncertainty) return uncertainty_;
     if (quantity == quantity::kHeightMean) return height_;
     if (quantity == quantity::kObjectProbability) return probability_;
-    return std_;
+    if (quantity == quantity::kMeasurementStd || quantity == quantity::kHeightStd) return std_;
+    throw std::out_of_range("no values of " + std::string(quantity));
   }
 
   void set_truth(const Scene* scene) override { truth_ = scene; }
