@@ -194,8 +194,9 @@ ReadPlan Experiment::make_plan(const ReadPlan& more) const {
   palpate::add_readers(options_.stop, plan);
   const std::string backend = "backend " + options_.backend.type;
   const QuantitySet predicts = backend_->predicts();
-  if (!predicts.empty()) plan.readers.push_back({backend, predicts, Stage::first_tap, true});
-  if (motions_) plan.readers.push_back({backend, MotionSelector::reads(), Stage::first_tap, true});
+  const std::string motion = motion_name(options_).empty() ? backend : "motion " + motion_name(options_);
+  if (!predicts.empty()) plan.readers.push_back({motion, predicts, Stage::first_tap, true});
+  if (motions_) plan.readers.push_back({motion, MotionSelector::reads(), Stage::first_tap, true});
   plan.readers.push_back({backend, backend_->reads(), Stage::first_tap});
   if (options_.log.maps) plan.readers.push_back({"log.maps", {quantity::kDeskPosition}, Stage::first_tap});
   if (options_.candidates.spacing)
@@ -257,7 +258,7 @@ void Experiment::check_backend(const TapRecord& tap) {
 std::shared_ptr<Backend> Experiment::make_backend(const ExperimentSetup& setup) {
   context_.from_above = belief_->candidates().from_above;
   std::shared_ptr<Backend> backend = setup.backend ? setup.backend : context_.create<Backend>(options_.backend);
-  if (!belief_->candidates().fixed && !backend->taps_any_line()) {
+  if (!context_.from_above && !backend->taps_any_line()) {
     throw Error("backend",
                 fmt::format("{} only taps from above, which the belief {} does not", options_.backend.type,
                             options_.belief.type),

@@ -154,10 +154,21 @@ RunSettings run_settings(const ExperimentOptions& options) {
           options.choice.tie_tolerance};
 }
 
-std::string belief_option(const ExperimentOptions& options, const char* path) {
-  const Tree* const found = options.belief.options != nullptr ? options.belief.options->find_path(path) : nullptr;
+namespace {
+
+/// Returns an option of a plugin by its dotted path: the text of a value, "{}" for a group, "" if absent.
+std::string option_text(const PluginChoice& plugin, const char* path) {
+  const Tree* const found = plugin.options != nullptr ? plugin.options->find_path(path) : nullptr;
   return found == nullptr ? "" : found->is_scalar() ? found->text : "{}";
 }
+
+}  // namespace
+
+std::string belief_option(const ExperimentOptions& options, const char* path) {
+  return option_text(options.belief, path);
+}
+
+std::string motion_name(const ExperimentOptions& options) { return option_text(options.backend, "motion.type"); }
 
 std::vector<Field> keys_beside_options() {
   return {Field("defaults",

@@ -84,6 +84,9 @@ RunSettings run_settings(const ExperimentOptions& options);
 /// group, "" if absent.
 std::string belief_option(const ExperimentOptions& options, const char* path);
 
+/// Returns the type of the backend's motion; "" for a backend without one.
+std::string motion_name(const ExperimentOptions& options);
+
 /// Returns the keys of a config that are not among these options, with their descriptions.
 std::vector<Field> keys_beside_options();
 

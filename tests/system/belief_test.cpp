@@ -39,6 +39,18 @@ TEST_F(Beliefs, OneThatIsNoGaussianProcessResumesAndReplaysToTheSameNumbersAndHa
   EXPECT_EQ(reported.status, 0) << reported.err;
 }
 
+TEST_F(Beliefs, AStartWithoutAContactIsCountedForEachBelief) {
+  std::map<std::string, std::string> shares;
+  for (const char* const belief : {"height_map", "nearest_neighbour"}) {
+    const std::string table = palpate({"sweep", paper(), "acquisition=uncertainty", "scene=cube", "initial.count=1",
+                                       "taps=4", std::string("belief=") + belief, "seed=range(1,7)"})
+                                  .out;
+    shares[belief] = table.substr(table.find("all jobs"), 30);
+  }
+  EXPECT_EQ(shares.at("height_map"), shares.at("nearest_neighbour"));
+  EXPECT_THAT(shares.at("height_map"), Not(HasSubstr(" 0.0%"))) << "no start without a contact";
+}
+
 TEST_F(Beliefs, AMapOfTheNearestContactsHasTheirHeights) {
   const fs::path run = ran(nearest_ + "taps=5 candidates.count=3 scene=block");
   std::map<std::pair<double, double>, double> tapped;
@@ -69,6 +81,9 @@ TEST_F(Beliefs, ADryRunNamesTheModelsAndWhoReadsThem) {
                     HasSubstr("  label GP: acquisition weighted\n")));
   EXPECT_THAT(palpate({"run", paper(), "--dry-run", "acquisition=random", "choice.fallback=none"}).out,
               AllOf(HasSubstr("models for the choice of taps: none\n"), Not(HasSubstr("label GP"))));
+  EXPECT_THAT(
+      palpate({"run", test::config("default.yaml"), "--dry-run", "acquisition=random", "choice.fallback=none"}).out,
+      HasSubstr(": motion per_tap\n"));
 }
 
 TEST_F(Beliefs, AnOptionOfTheFormerLayoutIsRefusedWithItsNewPlace) {

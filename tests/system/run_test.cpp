@@ -101,7 +101,7 @@ TEST_F(ARun, NamesEveryModelWithWhoReadsItInThePrintedConfigAndInTheManifest) {
             "#   label GP: acquisition weighted\n");
   EXPECT_EQ(models("acquisition=random choice.fallback=none"), "# models for the choice of taps: none\n");
   EXPECT_EQ(models("acquisition=random choice.fallback=none motion=adaptive"),
-            "# models for the choice of taps, and the parts that read them:\n#   height GP: backend simulator\n");
+            "# models for the choice of taps, and the parts that read them:\n#   height GP: motion continuous\n");
   EXPECT_THAT(run("kernel.length_scale=1e-300m scene.objects.0.at=[30cm,5cm] --print-config").out,
               HasSubstr("# this config cannot be run: "));
 

@@ -62,7 +62,7 @@ TEST(Experiment, NamesEveryModelWithWhoReadsItBeforeAnyIsBuilt) {
       ElementsAre("footprint primitives: acquisition footprint_entropy", "height GP: stop.max_standard_deviation",
                   "surface GP: stop.expected_rmse", "footprint primitives: stop.expected_rmse"));
   EXPECT_THAT(readers({"acquisition=random", "choice.fallback=none", "motion.adaptive_hover={clearance: 2cm}"}),
-              ElementsAre("height GP: backend simulator"));
+              ElementsAre("height GP: motion paper"));
 }
 
 TEST(Experiment, RecordsTheModelsThatItNamesAndNoOthers) {
