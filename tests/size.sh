@@ -48,7 +48,7 @@ tests/bad_plugins 447 49
 tests/baxter 5676 0
 tests/benchmark 1071 857
 tests/consumer 165 0
-tests/contract 1505 0 # laws of beliefs
+tests/contract 1520 0 # laws of beliefs
 tests/crash 414 434
 tests/fake_baxter 2425 47
 tests/fuzz 380 0
@@ -56,10 +56,10 @@ tests/python 0 1181 # taps from any side by ask and tell
 tests/report 1301 85
 tests/slurm 483 0
 tests/stability 2435 0
-tests/support 2266 0 # the simulator as a program of the backend process
+tests/support 2295 0 # the simulator as a program of the backend process; grids of candidates, which only tests make
 tests/sweep 4085 0
-tests/system 9260 0 # lines of any direction for programs and records; beliefs
-tests/unit 17345 0 # oracles of the footprint: pushes, calibration, enumeration, joint distribution; strategies over other beliefs
+tests/system 9280 0 # lines of any direction for programs and records; beliefs
+tests/unit 17380 0 # oracles of the footprint: pushes, calibration, enumeration, joint distribution; strategies over other beliefs
 tests/ur_rtde 0 230
 tests/versions 50 17
 '

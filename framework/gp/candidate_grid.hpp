@@ -25,18 +25,6 @@ struct CandidateGrid {
   int nearest(double x, double y, const Area& area) const;
 };
 
-/// Returns a grid with `count` cells along each side, at least 1.
-CandidateGrid grid_by_count(const Area& area, int count);
-
-/// Returns a grid with cells of about `spacing` metres: cells_along() per side, at most kMaxCellsPerSide.
-CandidateGrid grid_by_spacing(const Area& area, double spacing);
-
-/// Returns the positions (x, y) for all y of `ys` and, for each, all x of `xs`. Order and spacing are arbitrary.
-CandidateGrid product_grid(Eigen::VectorXd xs, Eigen::VectorXd ys);
-
-/// Returns round(side / spacing), at least 1. A real number, because it may exceed every integer.
-double cells_along(double side, double spacing);
-
 /// Returns the grid of fixed candidates.
 CandidateGrid grid_of(const Candidates& candidates);
 

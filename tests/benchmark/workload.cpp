@@ -2,6 +2,7 @@
 #include "benchmark/workload.hpp"
 
 #include "experiment/policy.hpp"
+#include "support/grids.hpp"
 #include "support/plugins.hpp"
 #include "support/support.hpp"
 
@@ -43,7 +44,7 @@ Taps read_taps(const std::filesystem::path& file) {
 CandidateGrid square(int count) {
   Eigen::VectorXd places(count);
   for (int i = 0; i < count; ++i) places(i) = kSide * i / std::max(1, count - 1);
-  return product_grid(places, places);
+  return test::product_grid(places, places);
 }
 
 std::shared_ptr<Kernel> make_kernel() {

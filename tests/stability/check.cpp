@@ -3,6 +3,7 @@
 
 #include "stability/reference.hpp"
 #include "support/gaussian_process.hpp"
+#include "support/grids.hpp"
 #include "support/mocks.hpp"
 #include "support/plugins.hpp"
 #include "support/support.hpp"
@@ -94,7 +95,7 @@ Answer answered(const Problem& problem, const Engine& engine) {
   const Case& one = problem.one;
   const Points places = asked(problem, engine);
   const bool dense = engine.kind == EngineSettings::Kind::dense;
-  const CandidateGrid candidates = dense ? scattered(places) : product_grid(places.col(0), places.col(1));
+  const CandidateGrid candidates = dense ? scattered(places) : test::product_grid(places.col(0), places.col(1));
   // Of a product grid, the places lie on the diagonal.
   const Eigen::Index step = dense ? 1 : places.rows() + 1;
   const auto at_places = [&](const Eigen::VectorXd& map) {

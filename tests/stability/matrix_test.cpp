@@ -2,6 +2,7 @@
 // The default over noise, length scale and taps: no run ends with what is not finite, and the model of outliers costs
 // little where there are none. tests/stability_matrix.py is the long form.
 #include "gp/robust_surface.hpp"
+#include "support/grids.hpp"
 
 #include "support/gaussian_process.hpp"
 #include "support/runs.hpp"

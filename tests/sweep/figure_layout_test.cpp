@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "report/figures/figure_layout.hpp"
+#include "support/grids.hpp"
 
 #include "support/gaussian_process.hpp"
 
@@ -28,7 +29,7 @@ std::vector<std::vector<double>> numbers_in(const std::string& text) {
 
 TEST(MatrixTest, HasEveryCellOnceWithTheLowestRowFirst) {
   const Area area{0.3, 0.2};
-  const SceneFrame frame{grid_by_spacing(area, 0.1), area};  // 3 x 2
+  const SceneFrame frame{test::grid_by_spacing(area, 0.1), area};  // 3 x 2
   const Eigen::VectorXd values = Eigen::VectorXd::LinSpaced(6, 1, 6);
   EXPECT_EQ(matrix_of(frame, values), "1 2 3\n4 5 6\n");
   EXPECT_EQ(surface_of(frame, values / 100, values / 1000),
@@ -38,7 +39,7 @@ TEST(MatrixTest, HasEveryCellOnceWithTheLowestRowFirst) {
 
 TEST(MatrixTest, ThinsOutWhatNoPictureShowsAndStillCoversTheArea) {
   const Area area{1.0, 1.0};
-  const SceneFrame frame{grid_by_count(area, 1000), area};
+  const SceneFrame frame{test::grid_by_count(area, 1000), area};
   const auto rows = numbers_in(matrix_of(frame, frame.candidates.points.col(0)));
   ASSERT_LT(rows.size(), 300U);
   const auto count = static_cast<double>(rows.size());
@@ -48,13 +49,13 @@ TEST(MatrixTest, ThinsOutWhatNoPictureShowsAndStillCoversTheArea) {
 
 TEST(MatrixTest, ASingleCandidateFillsTheArea) {
   const Area area{0.1, 0.1};
-  const SceneFrame frame{grid_by_count(area, 1), area};
+  const SceneFrame frame{test::grid_by_count(area, 1), area};
   EXPECT_EQ(matrix_of(frame, Eigen::VectorXd::Constant(1, 7.0)), "7 7\n7 7\n");
 }
 
 TEST(MatrixTest, WhatIsNotFiniteIsAGapAndNoWord) {
   const Area area{0.2, 0.2};
-  const SceneFrame frame{grid_by_count(area, 2), area};
+  const SceneFrame frame{test::grid_by_count(area, 2), area};
   Eigen::VectorXd values = Eigen::VectorXd::Zero(4);
   values(1) = std::nan("");
   values(2) = HUGE_VAL;
@@ -88,7 +89,7 @@ TEST(ReliefTest, HoldsDeskSurfaceAndTaps) {
 
 TEST(InSightTest, LeavesOutWhatTheSurfaceHidesFromTheSide) {
   const Area area{0.2, 0.2};
-  const SceneFrame frame{grid_by_count(area, 20), area};
+  const SceneFrame frame{test::grid_by_count(area, 20), area};
   MapsAtTap snapshot;
   snapshot.surface = Eigen::VectorXd::Zero(frame.candidates.size());
   // A wall across the middle, 10 cm high: seen from 30 degrees above, it hides what lies up to 17 cm behind it.
@@ -112,7 +113,7 @@ TEST(SheetTest, WritesEachKindOfTapToABlockOfItsOwnAndPlotsOnlyWhatThereIs) {
   snapshot.next->request.line = line_from_above({0.06, 0.07});
   layout.taps("a", snapshot);
   const Area area{0.1, 0.1};
-  const SceneFrame frame{grid_by_count(area, 2), area};
+  const SceneFrame frame{test::grid_by_count(area, 2), area};
   layout.data("m", matrix_of(frame, Eigen::VectorXd::Zero(4)));
   layout.map({50, 50, 200, 200}, frame, "m", "a", {Palette::viridis, 0, 1, "e"});
   const std::string script = layout.script();

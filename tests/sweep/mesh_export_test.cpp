@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // PLY as other programs read it.
 #include "report/mesh_export.hpp"
+#include "support/grids.hpp"
 #include "support/support.hpp"
 
 #include <gmock/gmock.h>
@@ -18,7 +19,7 @@ using ::testing::HasSubstr;
 using ::testing::Not;
 
 ReconstructedSurface two_by_two(bool with_truth) {
-  const CandidateGrid candidates = product_grid(Eigen::Vector2d(0.1, 0.3), Eigen::Vector2d(0.2, 0.7));
+  const CandidateGrid candidates = test::product_grid(Eigen::Vector2d(0.1, 0.3), Eigen::Vector2d(0.2, 0.7));
   ReconstructedSurface out{
       surface_mesh(candidates, Eigen::Vector4d(0.0, 1.0 / 3.0, -0.0625, 1e-17), Eigen::Vector4d(0.5, 0.25, 1e-5, 0.0)),
       Eigen::Vector4d(-0.125, 0.5, 1.5, 0.0), std::nullopt};
@@ -59,7 +60,7 @@ TEST(SurfacePly, DeclaresWhatItHoldsAndHoldsWhatItDeclares) {
 
 TEST(SurfacePly, LeavesOutTruthThatIsNotKnownAndFacesThatAreNotThere) {
   EXPECT_THAT(surface_ply(two_by_two(false), "run"), Not(HasSubstr("true_height")));
-  const CandidateGrid one = product_grid(Eigen::VectorXd::Constant(1, 0.1), Eigen::VectorXd::Constant(1, 0.2));
+  const CandidateGrid one = test::product_grid(Eigen::VectorXd::Constant(1, 0.1), Eigen::VectorXd::Constant(1, 0.2));
   const Eigen::VectorXd value = Eigen::VectorXd::Constant(1, 0.5);
   const std::string ply = surface_ply({surface_mesh(one, value, value), value, std::nullopt}, "run");
   EXPECT_THAT(ply, Not(HasSubstr("element face")));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Heights over a grid as triangles: normals, orientation, and what hangs together.
 #include "report/mesh_export.hpp"
+#include "support/grids.hpp"
 
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>
@@ -16,7 +17,7 @@ constexpr double kRounding = 1e-13;
 
 /// A grid whose sides, numbers and distances all differ.
 CandidateGrid oblong() {
-  return product_grid(Eigen::VectorXd::LinSpaced(7, 0.01, 0.13), Eigen::Vector4d(0.1, 0.15, 0.2, 0.25));
+  return test::product_grid(Eigen::VectorXd::LinSpaced(7, 0.01, 0.13), Eigen::Vector4d(0.1, 0.15, 0.2, 0.25));
 }
 
 template <class Height>
@@ -114,14 +115,14 @@ TEST(SurfaceMesh, IsADiscWhoseInnerEdgesHaveATriangleOnEitherSide) {
 }
 
 TEST(SurfaceMesh, OfASingleRowOrASingleCandidateHasNoTriangleAndLevelNormalsAcross) {
-  const CandidateGrid row = product_grid(Eigen::Vector3d(0.0, 0.1, 0.2), Eigen::VectorXd::Constant(1, 0.5));
+  const CandidateGrid row = test::product_grid(Eigen::Vector3d(0.0, 0.1, 0.2), Eigen::VectorXd::Constant(1, 0.5));
   const Surface strip = surface_mesh(row, Eigen::Vector3d(0.0, 0.1, 0.2), Eigen::Vector3d::Zero());
   EXPECT_TRUE(strip.triangles.empty());
   ASSERT_EQ(strip.vertices.size(), 3U);
   for (const Surface::Vertex& one : strip.vertices)
     EXPECT_LT((one.normal - Eigen::Vector3d(-1, 0, 1).normalized()).norm(), kRounding);
 
-  const CandidateGrid one = product_grid(Eigen::VectorXd::Constant(1, 0.1), Eigen::VectorXd::Constant(1, 0.5));
+  const CandidateGrid one = test::product_grid(Eigen::VectorXd::Constant(1, 0.1), Eigen::VectorXd::Constant(1, 0.5));
   const Surface point = surface_mesh(one, Eigen::VectorXd::Constant(1, 0.3), Eigen::VectorXd::Constant(1, 0.01));
   EXPECT_TRUE(point.triangles.empty());
   EXPECT_EQ(point.vertices.at(0).normal, Eigen::Vector3d(0, 0, 1));

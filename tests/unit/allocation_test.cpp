@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What a tap costs in memory: nothing, once the first have made room. Counts every call of malloc in this process.
 #include "experiment/experiment.hpp"
+#include "support/grids.hpp"
 #include "support/runs.hpp"
 #include "support/sanitizers.hpp"
 #include "support/testing.hpp"
@@ -49,7 +50,7 @@ namespace {
 
 TEST(Allocation, NoTapOfAnyEngineAllocatesInTheSteadyState) {
   if (test::kSanitized) GTEST_SKIP() << "under a sanitizer the allocator cannot be counted";
-  const CandidateGrid candidates = grid_by_count({0.23, 0.23}, 60);
+  const CandidateGrid candidates = test::grid_by_count({0.23, 0.23}, 60);
   for (const auto kind : {EngineSettings::Kind::dense, EngineSettings::Kind::grid, EngineSettings::Kind::lowrank}) {
     EngineSettings settings;
     settings.engine = kind;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Honest uncertainty: on surfaces drawn from the very model, 95 % intervals hold 95 % of what was not tapped.
 #include "belief/metrics.hpp"
+#include "support/grids.hpp"
 #include "support/runs.hpp"
 #include "support/sanitizers.hpp"
 #include "support/testing.hpp"

@@ -4,6 +4,7 @@
 
 #include "support/arrays.hpp"
 #include "support/gaussian_process.hpp"
+#include "support/grids.hpp"
 #include "support/testing.hpp"
 #include "support/textbook.hpp"
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What error is expected, and whether a run that stops for it was right to.
 #include "belief/expected_rmse.hpp"
+#include "support/grids.hpp"
 
 #include "experiment/stop_rules.hpp"
 #include "support/gaussian_process.hpp"

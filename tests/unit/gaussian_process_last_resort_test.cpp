@@ -2,6 +2,7 @@
 // What a process does with matrices that no Cholesky factorisation takes: it raises the jitter within its limits,
 // and at the very last sets taps aside. It never gives a number that is none.
 #include "support/gaussian_process.hpp"
+#include "support/grids.hpp"
 #include "support/mocks.hpp"
 #include "support/testing.hpp"
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include "support/grids.hpp"
 #include "support/mocks.hpp"
 #include "unit/engine_data.hpp"
 

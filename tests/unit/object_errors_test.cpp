@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What is said of each of several objects, by maps that are drawn by hand, and in a run by its taps.
 #include "belief/object_errors.hpp"
+#include "support/grids.hpp"
 
 #include "support/runs.hpp"
 #include "support/shape_cases.hpp"

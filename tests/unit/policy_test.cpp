@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "experiment/policy.hpp"
+#include "support/grids.hpp"
 
 #include "support/instruction_sets.hpp"
 #include "support/testing.hpp"

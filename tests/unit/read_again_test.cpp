@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Whether a contact was with an object is read again when more is known of what the arm adds to all heights.
 #include "belief/height_map.hpp"
+#include "support/grids.hpp"
 
 #include "record/json.hpp"
 #include "support/runs.hpp"

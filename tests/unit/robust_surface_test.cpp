@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The maps of a surface without outliers against the surface at each candidate by itself.
 #include "gp/robust_surface.hpp"
+#include "support/grids.hpp"
 
 #include "support/gaussian_process.hpp"
 #include "support/plugins.hpp"
@@ -12,7 +13,7 @@ namespace palpate {
 namespace {
 
 CandidateGrid lattice_of(int columns, int rows) {
-  return product_grid(Eigen::VectorXd::LinSpaced(columns, 0.0, 0.2), Eigen::VectorXd::LinSpaced(rows, 0.0, 0.15));
+  return test::product_grid(Eigen::VectorXd::LinSpaced(columns, 0.0, 0.2), Eigen::VectorXd::LinSpaced(rows, 0.0, 0.15));
 }
 
 class RobustMaps : public testing::TestWithParam<int> {};

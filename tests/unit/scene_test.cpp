@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-#include "gp/candidate_grid.hpp"
 #include "scene/scene_options.hpp"
+#include "support/grids.hpp"
 #include "support/testing.hpp"
 
 namespace palpate::test {

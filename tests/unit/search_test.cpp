@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The initial design `search`: where it looks, when it ends, and that it is no worse for what happens on the way.
 #include "experiment/search_design.hpp"
+#include "support/grids.hpp"
 
 #include "support/runs.hpp"
 #include "support/testing.hpp"

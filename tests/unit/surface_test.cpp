@@ -3,6 +3,7 @@
 #include "belief/metrics.hpp"
 #include "record/summary.hpp"
 #include "support/arrays.hpp"
+#include "support/grids.hpp"
 #include "support/runs.hpp"
 #include "support/testing.hpp"
 #include "support/textbook.hpp"

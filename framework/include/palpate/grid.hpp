@@ -16,14 +16,12 @@ namespace palpate {
 constexpr int kMaxCellsPerSide = 2000;
 
 /// Returns lines straight down at the centres of a grid of cells over the area, row by row: x increases with the
-/// column, y with the row. The config sets number or size of the cells; otherwise there are `usual_count` per side.
-/// Throws Error for more than kMaxCellsPerSide.
-inline Candidates grid_from_above(const Context& context, int usual_count = 47) {
-  // Lines begin above every object and end below the desk; the arm may join them at any height.
+/// column, y with the row. The lines begin above every object and end below the desk, whose height is `desk` (metres);
+/// the arm may join them at any height. `run` sets number or size of the cells; otherwise there are `usual_count` per
+/// side. Throws Error for more than kMaxCellsPerSide.
+inline Candidates grid_from_above(const Area& area, double desk, const RunSettings& run, int usual_count = 47) {
   constexpr double kTop = 0.5;      // metres above the desk
   constexpr double kBeneath = 0.1;  // metres below the desk
-  const RunSettings& run = context.run;
-  const Area area = context.scene.area();
   const auto cells = [&](double side) {
     const double count =
         run.spacing ? std::round(side / *run.spacing) : static_cast<double>(run.candidates.value_or(usual_count));
@@ -40,13 +38,19 @@ inline Candidates grid_from_above(const Context& context, int usual_count = 47) 
   out.from_above = true;
   out.starts.resize(Eigen::Index{out.rows} * out.columns, 3);
   for (Eigen::Index i = 0; i < out.starts.rows(); ++i) {
+    const Eigen::Index row = i / out.columns;
     out.starts(i, 0) = (static_cast<double>(i % out.columns) + 0.5) * area.width / out.columns;
-    out.starts(i, 1) = (static_cast<double>(i / out.columns) + 0.5) * area.depth / out.rows;
+    out.starts(i, 1) = (static_cast<double>(row) + 0.5) * area.depth / out.rows;
   }
-  out.starts.col(2).setConstant(context.scene.desk() + kTop);
+  out.starts.col(2).setConstant(desk + kTop);
   out.directions = Eigen::RowVector3d(0.0, 0.0, -1.0);
   out.lengths = Eigen::VectorXd::Constant(1, kTop + kBeneath);
   return out;
+}
+
+/// Returns this grid over the area of a scene, as the config sets it.
+inline Candidates grid_from_above(const Context& context, int usual_count = 47) {
+  return grid_from_above(context.scene.area(), context.scene.desk(), context.run, usual_count);
 }
 
 /// Returns the errors of heights (M values, metres) at fixed candidates from above. `on_object`: cells predicted to be
