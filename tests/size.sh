@@ -42,7 +42,7 @@ plugins/footprints 2422 15 # each folder builds itself
 plugins/kernels 547 9 # each folder builds itself
 plugins/programs 520 14 # each folder builds itself
 plugins/shapes 2026 28 # each folder builds itself
-plugins/starters 280 28 # a belief without a GP
+plugins/starters 286 28 # a belief without a GP, with a field of its own
 tests 0 1980 # reasons for counts of instructions, campaigns by name, checks of packages for ARM, sizes of classes
 tests/bad_plugins 447 49
 tests/baxter 5676 0

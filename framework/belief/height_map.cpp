@@ -205,10 +205,15 @@ SurfaceMaps HeightMap::maps(const ModelSet& models) const {
 
 BeliefState HeightMap::state(std::optional<Eigen::Index> candidate) const {
   BeliefState out;
-  for (const char* kind : {"fit_failed", "jitter", "pivoted", "redundant_taps", "variance_clamped"})
-    out.diagnostics[kind] = 0;
-  if (candidate) add_values(out, *candidate);
-  if (!candidate) add_calibration(out);
+  constexpr std::size_t kUsualFields = 32;
+  out.fields.reserve(kUsualFields);
+  if (candidate) {
+    add_values(out, *candidate);
+  } else {
+    for (const char* kind : {"fit_failed", "jitter", "pivoted", "redundant_taps", "variance_clamped"})
+      out.diagnostics[kind] = 0;
+    add_calibration(out);
+  }
   add_gp_states(out, !candidate);
   const FootprintModel* const footprint = models_.footprint();
   if (footprint != nullptr && begun_.footprint) {

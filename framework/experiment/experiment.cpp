@@ -97,8 +97,7 @@ void Experiment::end(TapRecord& tap, Observer& observer) {
   check_backend(tap);
 }
 
-void Experiment::take_in(TapRecord tap) {
-  complete(tap.request);
+void Experiment::take_in(const TapRecord& tap) {
   belief_->add(tap.request, tap.result);
   selector_.take_in(tap, *belief_);
   if (motions_) motions_->take_in(tap, *belief_);
@@ -107,7 +106,8 @@ void Experiment::take_in(TapRecord tap) {
 }
 
 void Experiment::resume(const std::vector<TapRecord>& taps) {
-  for (const TapRecord& tap : taps) {
+  for (TapRecord tap : taps) {
+    complete(tap.request);
     belief_->update();
     begin_stages(tap.is_of_caller() ? Source::caller : tap.request.source);
     if (tap.request.source == Source::fallback) belief_->begin(Stage::first_fallback);

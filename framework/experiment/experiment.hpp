@@ -66,7 +66,7 @@ class Experiment final {
   std::optional<TapRecord> choose_next(const TapOverride* override = nullptr);
 
   /// Takes in a tap that was made. The models take it in with the next tap.
-  void take_in(TapRecord tap);
+  void take_in(const TapRecord& tap);
 
   /// Takes in the taps of an earlier process, in their order, as the loop did.
   void resume(const std::vector<TapRecord>& taps);

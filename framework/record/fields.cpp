@@ -101,13 +101,13 @@ const std::vector<ErrorField>& error_list() {
 std::optional<std::string> if_any(const std::string& text) { return text.empty() ? std::nullopt : std::optional(text); }
 
 /// Returns the number at `name` in the state of a belief.
-std::optional<double> number_of(const BeliefState& state, const std::string& name) {
+std::optional<double> number_of(const BeliefState& state, std::string_view name) {
   const Scalar* const value = state.find(name);
   const double* const number = value != nullptr ? std::get_if<double>(value) : nullptr;
   return number != nullptr ? std::optional(*number) : std::nullopt;
 }
 
-bool has(const BeliefState& state, const std::string& name) { return state.find(name) != nullptr; }
+bool has(const BeliefState& state, std::string_view name) { return state.find(name) != nullptr; }
 
 constexpr const char* kObject = "object";
 
@@ -119,36 +119,34 @@ std::string words(const std::vector<Relabelled>& relabelled) {
   return out;
 }
 
-/// Adds the fields for the state of the models, which taps and results share.
+/// Adds the fields for the state of the models, which taps and results share. All names with a dot are written as the
+/// belief reports them, in its order.
 template <class Record>
 void list_models(FieldList<Record>& list) {
-  const auto family = [&](const std::string& name, const char* meaning) {
-    list.add_family(name + ".*", meaning, [prefix = name + "."](Row& row, const Record& record) {
-      for (const auto& [field, value] : record.state.fields) {
-        if (boost::starts_with(field, prefix)) row.add(field, value);
-      }
-    });
+  const auto family = [&](const char* pattern, const char* meaning) {
+    list.add_family(pattern, meaning, [](Row&, const Record&) {});
   };
-  family("height_gp",
+  family("height_gp.*",
          "state of the height GP: hyperparameters by the names of their options (`kernel.kernels.0.length_scale`), "
          "`log_marginal_likelihood`, and `jitter` as a variance. `condition` is a lower bound of the condition "
          "number, most often within a factor of 3. `engine` computes the posterior. `error_bound` limits the error "
          "that `engine` adds to the rounding of `dense`: of means in signals or of variances in signals squared, "
          "whichever is larger. `fit.*` describes the fit after the latest tap, if one was due: `changed` (false if "
          "the old hyperparameters stay), `objective` (larger is better), `evaluations`, and `reason` for its end");
-  family("label_gp", "state of the label GP, with the same fields as `height_gp`");
-  family("surface_gp",
+  family("label_gp.*", "state of the label GP, with the same fields as `height_gp`");
+  family("surface_gp.*",
          "state of the GP over the heights of taps on an object, with the fields of `height_gp`. Present only with "
          "`surface: two_part`, and only if the strategy, a stop rule or the backend reads the height");
-  family("footprint",
+  family("footprint.*",
          "numbers that the footprint reports about itself, and `remark` if their computation needs a comment; "
          "absent with `footprint: gp_regression`");
-  list.add_family("suspected_outliers",
-                  "list of `tap` and `probability` of the contacts whose height or label is an outlier with a "
-                  "probability of 0.1 or more. Null if there are none; only with `belief.height.outlier_probability`",
+  family("suspected_outliers",
+         "list of `tap` and `probability` of the contacts whose height or label is an outlier with a "
+         "probability of 0.1 or more. Null if there are none; only with `belief.height.outlier_probability`");
+  list.add_family("*.*", "any other name with a dot: a value that a belief of your own reports about itself",
                   [](Row& row, const Record& record) {
-                    for (const auto& [field, value] : record.state.fields) {
-                      if (field == "suspected_outliers") row.add(field, value);
+                    for (const auto& [name, value] : record.state.fields) {
+                      if (name.find('.') != std::string::npos || name == "suspected_outliers") row.add(name, value);
                     }
                   });
 }

@@ -74,7 +74,8 @@ TEST(SurfaceMesh, TakesCentralDifferencesInsideAndOneSidedOnesAtTheEdges) {
       if (column == 0) x += step / 2;
       if (column == candidates.columns - 1) x -= step / 2;
       const Eigen::Vector3d expected = Eigen::Vector3d(-2 * bend * x, 0.0, 1.0).normalized();
-      const auto vertex = static_cast<std::size_t>(row * candidates.columns + column);
+      const std::size_t vertex = static_cast<std::size_t>(row) * static_cast<std::size_t>(candidates.columns) +
+                                 static_cast<std::size_t>(column);
       EXPECT_LT((mesh.vertices[vertex].normal - expected).cwiseAbs().maxCoeff(), kRounding);
     }
   }

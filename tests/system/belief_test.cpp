@@ -29,7 +29,8 @@ TEST_F(Beliefs, OneThatIsNoGaussianProcessRunsAndComparesOnTwelveObjects) {
 TEST_F(Beliefs, OneThatIsNoGaussianProcessResumesAndReplaysToTheSameNumbersAndHasAPage) {
   const fs::path run = ran(nearest_ + "taps=9");
   const std::string taps = part_of(run, "tap");
-  EXPECT_THAT(taps, HasSubstr("rmse_m"));
+  EXPECT_THAT(taps, AllOf(HasSubstr("rmse_m"), HasSubstr(R"("nearest": {"mean_uncertainty": )")))
+      << "a field of its own";
   const Ended replayed = palpate({"replay", run});
   EXPECT_EQ(replayed.status, 0) << replayed.out << replayed.err;
   break_off(run);

@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -27,6 +28,7 @@ using RecordFields = std::vector<std::pair<std::string, Scalar>>;
 
 /// The state of a belief, for one row of the record.
 struct BeliefState {
+  /// Fields of the record. Fields with a dot in their name, such as "my_belief.radius", may be a belief's own.
   RecordFields fields;
   /// Number of numerical problems so far, by kind: "fit_failed", "jitter", "pivoted", "redundant_taps",
   /// "variance_clamped".
@@ -40,7 +42,7 @@ struct BeliefState {
   }
 
   /// Returns null if there is no such field.
-  const Scalar* find(const std::string& name) const {
+  const Scalar* find(std::string_view name) const {
     for (const auto& [field, value] : fields) {
       if (field == name) return &value;
     }

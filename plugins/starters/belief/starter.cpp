@@ -82,6 +82,13 @@ class MyBelief final : public Belief {
     throw std::out_of_range("no values of " + std::string(quantity));
   }
 
+  /// Adds a field of its own to each line of the record.
+  BeliefState state(std::optional<Eigen::Index> /*candidate*/) const override {
+    BeliefState out;
+    if (uncertainty_.size() > 0) out.add("nearest.mean_uncertainty", uncertainty_.mean());
+    return out;
+  }
+
   void set_truth(const Scene* scene) override { truth_ = scene; }
   std::optional<BeliefErrors> errors(ErrorsFor /*purpose*/) override {
     if (truth_ == nullptr || height_.size() == 0) return BeliefErrors();
