@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What a config may say of objects, and what it is told when it may not.
+#include "config/describe.hpp"
 #include "config/resolve.hpp"
 #include "config/yaml.hpp"
 #include "support/shape_cases.hpp"
@@ -112,6 +113,17 @@ TEST(SceneOptions, NameThePluginsOfTheirShapes) {
   EXPECT_NE(tree.find_path("objects.0.checksum"), nullptr);
   EXPECT_EQ(options.objects[0].rotation, 1.0);
   EXPECT_EQ(object_refusal("{type: mesh, fil: cup.stl, unit: 1 mm}"), "unknown option 'fil'");
+}
+
+TEST(SceneOptions, WithAnyOneEffectMakeTapsThatAreNotPerfect) {
+  EffectOptions all;
+  EXPECT_TRUE(all.values.empty());
+  for (const FieldDescription& effect : describe_fields([&](Fields& fields) { all.list(fields); })) {
+    EffectOptions options;
+    ResolveNotes notes;
+    resolve(options, parse_value("{" + effect.name + ": {}}", "effects"), shared_host(), notes);
+    EXPECT_FALSE(options.values.empty()) << effect.name;
+  }
 }
 
 }  // namespace

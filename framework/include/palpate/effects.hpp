@@ -118,6 +118,12 @@ struct Effects {
   std::optional<Reach> reach;
   std::optional<Shaft> shaft;
   std::optional<Push> push;
+
+  /// Returns whether taps are perfect: none of the effects above is present.
+  bool empty() const {
+    return !(force_noise || force_drift || stiffness || joint_lag || latency || height_offset || foreign_objects ||
+             tip_radius || pose_noise || missed_contacts || false_contacts || reach || shaft || push);
+  }
 };
 
 }  // namespace palpate

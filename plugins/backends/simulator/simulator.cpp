@@ -20,8 +20,7 @@ Simulator::Simulator(const Options& options, const Context& context)
   const Effects& effects = scene_.effects();
   moves_ = effects.force_noise || effects.force_drift || effects.stiffness || effects.joint_lag || effects.latency ||
            effects.missed_contacts || effects.false_contacts;
-  perfect_ = !(moves_ || effects.tip_radius || effects.pose_noise || effects.reach || effects.shaft ||
-               effects.height_offset || effects.foreign_objects || effects.push);
+  perfect_ = effects.empty();
   if (context.from_above && scene_.highest() >= scene_.desk() + options.motion.at(0).hover) {
     throw Error("motion.hover",
                 fmt::format("an object is {:g} cm high, but the arm travels at {:g} cm",
