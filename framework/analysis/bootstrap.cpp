@@ -14,9 +14,9 @@ namespace {
 /// Influence of a cluster on the mean, and size of the cluster divided by the average size.
 using ClusterInfluence = std::pair<double, double>;
 
-/// The influences of all clusters, divided by the largest one and sorted. If the negated influences sort before them,
-/// `influences` has the negated ones and `mirrored` is set. So neither the order of the clusters nor the sign of the
-/// values changes the draws.
+/// The influences of all clusters, divided by the largest absolute influence and sorted. If the negated influences come
+/// first in lexicographic order, `influences` has the negated influences, and `mirrored` is set. Therefore, neither the
+/// order of the clusters nor the sign of the values changes the draws.
 struct ScaledInfluences {
   std::vector<ClusterInfluence> influences;
   double unit = 0.0;
@@ -51,18 +51,19 @@ ScaledInfluences scale_influences(const Clusters& clusters, double mean) {
 }
 
 /// Returns the number of resamples for this number of clusters. A small sample gets more resamples, because the ends of
-/// its interval are far out in the distribution of its means, where draws are few. A very large sample gets fewer: 2000
-/// resamples determine the ends within 3 % of half the interval.
+/// its interval are far out in the distribution of resampled means, where draws are few. A very large sample gets fewer
+/// resamples: 2000 determine the ends within 3 % of half the interval.
 std::size_t resamples_of(std::size_t count) {
   constexpr std::size_t kMostDraws = 100'000'000;
   if (count > kMostDraws / kResamples) return std::max(kMostDraws / count, kResamples / 5);
   return std::clamp(10'000'000 / count, kResamples, 10 * kResamples);
 }
 
-/// Draws `count` indices with replacement and calls `take` with each.
+/// Draws `count` indices below `count` with replacement and calls `take` with each.
 template <class Take>
 void draw(Random& random, std::uint64_t count, const Take& take) {
-  // Each index takes 32 bits, two per random number. The probability of an index is off by at most count / 2^32.
+  // Each index uses 32 bits, so a 64-bit random number gives two indices. The probability of an index is off by at most
+  // count / 2^32, relative to 1 / count.
   const auto at = [&](std::uint64_t bits) { take(static_cast<std::size_t>((bits * count) >> 32)); };
   for (std::uint64_t i = 0; i + 1 < count; i += 2) {
     const std::uint64_t bits = random.bits();
@@ -85,7 +86,7 @@ double bias_of(const std::vector<double>& values, double centre, double rounding
   return normal_quantile(std::clamp(share, least, 1.0 - least));
 }
 
-/// Returns the skewness of the influences, the acceleration of BCa.
+/// Returns the acceleration of BCa, which is proportional to the skewness of the influences.
 double acceleration_of(const std::vector<double>& influences) {
   double squares = 0.0;
   double cubes = 0.0;
@@ -96,7 +97,8 @@ double acceleration_of(const std::vector<double>& influences) {
   return cubes / (6.0 * squares * std::sqrt(squares));
 }
 
-/// Returns the BCa interval of resampled values about the estimate `centre`. Reorders `values`.
+/// Returns the BCa interval of the estimate `centre`. `values`: the estimates of all resamples, which are reordered.
+/// Values within `rounding` of `centre` count as equal to it.
 MeanInterval interval_of(std::vector<double>& values, double centre, double rounding,
                          const std::vector<double>& influences) {
   const double bias = bias_of(values, centre, rounding);

@@ -10,13 +10,13 @@
 
 namespace palpate {
 
-/// Default number of resamples. Samples of fewer than 1000 values get up to ten times as many. Samples of more than
-/// 10000 values get fewer, but at least 2000. With these numbers, another stream of random numbers moves the ends of an
+/// Default number of resamples. Samples of fewer than 1000 clusters get up to ten times as many. Samples of more than
+/// 10000 clusters get fewer, but at least 2000. With these numbers, a different random stream changes the ends of an
 /// interval by about 1 % of its width.
 inline constexpr std::size_t kResamples = 10000;
 
-/// Least number of clusters for an interval. With four clusters, resampled means stay within the range of the values,
-/// and this range misses the true mean in one of eight samples.
+/// Least number of clusters for an interval. Resampled means stay within the range of the values. With four clusters,
+/// this range misses the true mean in one of eight samples.
 inline constexpr std::size_t kLeastForInterval = 5;
 
 /// Least number of clusters for a bootstrap interval. From 20 clusters on, the bootstrap interval has the same coverage
@@ -25,8 +25,8 @@ inline constexpr std::size_t kLeastForInterval = 5;
 inline constexpr std::size_t kLeastForBootstrap = 20;
 
 /// Returns the mean of finite values with a 95 % interval: Student's t below kLeastForBootstrap clusters, else
-/// bootstrap_mean(). Of the two, this is the interval with the better coverage. Fewer than kLeastForInterval clusters,
-/// or clusters that are all_equal() with this `scale`, have no interval.
+/// bootstrap_mean(). For each number of clusters, this is the interval with the better coverage of the two. Fewer than
+/// kLeastForInterval clusters, or clusters that are all_equal() with this `scale`, have no interval.
 MeanEstimate mean_of_sample(const Clusters& clusters, double scale = 0.0);
 
 /// Returns the mean of finite values with a two-sided 95 % bootstrap interval: bias-corrected and accelerated (BCa;
@@ -46,19 +46,20 @@ MeanEstimate bootstrap_mean(const Clusters& clusters, double scale = 0.0);
 
 /// Ratio of two means with its two-sided 95 % interval.
 struct RatioEstimate {
-  std::size_t count = 0;  ///< number of pairs of sums
+  std::size_t count = 0;  ///< number of pairs of values
   double ratio = 0.0;
   std::optional<MeanInterval> interval;
 };
 
 /// Returns the mean of `above` divided by the mean of `below`. Values with the same index form a pair. The pairs must
-/// be independent of each other. A pair has the sums over a cluster. The interval resamples whole pairs, so a cause
-/// that raises both values of a pair does not widen it. The interval is BCa and widened like the interval of
-/// bootstrap_mean(). The acceleration uses the influence of each pair, (above - ratio below) / mean below (Efron and
-/// Tibshirani 1993, An Introduction to the Bootstrap, sections 14.3 and 22.5).
+/// be independent of each other. For clustered samples, pass one pair per cluster: the two sums over the cluster. The
+/// interval resamples whole pairs, so a cause that raises both values of a pair does not widen the interval. The
+/// interval is BCa and widened like the interval of bootstrap_mean(). The acceleration uses the influence of each pair,
+/// (`above` - `ratio` * `below`) / mean of `below` (Efron and Tibshirani 1993, An Introduction to the Bootstrap,
+/// sections 14.3 and 22.5).
 ///
-/// Returns nullopt if a value is negative or not finite, or if no value below is positive. There is no interval for
-/// fewer than kLeastForInterval pairs, and for pairs with equal ratios. An end of the interval is infinite if many
+/// Returns nullopt if a value is negative or not finite, or if no value of `below` is positive. There is no interval
+/// for fewer than kLeastForInterval pairs, and for pairs with equal ratios. An end of the interval is infinite if many
 /// values of `below` are 0. The order of the pairs does not matter.
 std::optional<RatioEstimate> bootstrap_ratio(const std::vector<double>& above, const std::vector<double>& below);
 

@@ -18,7 +18,7 @@ namespace palpate {
 std::string Column::words() const {
   const RecordField* field = find_summary_field(name);
   if (field == nullptr || field->label.empty()) return name;
-  // The labels of lengths continue a heading of the page, such as "over the scene".
+  // Labels of lengths, such as "over the scene", do not name the quantity, because they follow a heading on a page.
   if (unit != Unit::metre) return field->label;
   return (name.find("rmse") != std::string::npos ? "RMSE " : "distance ") + field->label;
 }

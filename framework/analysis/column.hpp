@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Columns of results.csv, the values of jobs in them, and the status of each value.
+// Columns of results.csv, the value of each job in a column, and the status of each value.
 #pragma once
 
 #include "record/fields.hpp"
@@ -25,25 +25,26 @@ struct Column {
   std::string better_words() const;  ///< returns "less is better", "more is better" or ""
 };
 
-/// Returns the column with this name; `summary.NAME` also names a result (see result_of()). Throws Error of the command
-/// line, naming `option` ("--cost"), if there is no such column.
+/// Returns the column `name`; `summary.NAME` also names a result (see result_of()). Throws Error with the place
+/// "command line" if there is no such column; the message names `option`, such as "--cost".
 Column find_column(const std::string& name, const std::vector<std::string>& columns, const std::string& option);
 
-/// The number in a cell. Flags count as 0 and 1; swept values are text and count if they are plain numbers.
+/// The number in a cell. Flags are converted to 0 and 1. Swept values are text, which is converted if it is a plain
+/// number.
 struct CellNumber {
   std::optional<double> value;  ///< nullopt for an empty cell and for a number that is not finite
   bool is_text = false;         ///< whether the cell holds text that is not a number
 };
 CellNumber number_of(const Scalar* cell);
 
-/// Returns a cell as conditions read it: in the format of a config, with its unit. Returns "" for a missing or infinite
-/// value.
+/// Returns a cell in the format that conditions compare: as in a config, with its unit. Returns "" for a value that is
+/// missing or not finite.
 std::string written_in(const std::string& column, const Scalar& cell);
 
-/// Status of a job's value in a comparison. A pair of jobs has the status of one of its two jobs, namely the one that
-/// comes first in this list.
+/// Status of a job's value in a comparison. The status of a pair of jobs is the status of its two jobs that comes first
+/// in this list.
 enum class ValueStatus {
-  left_out,  ///< A condition leaves the job out. A condition on a value that the job lacks is false.
+  left_out,  ///< The job does not satisfy the condition. A condition on a value that the job lacks is false.
   without_partner,
   unfinished,
   failed,
@@ -56,19 +57,18 @@ struct JobValue {
   double value = 0.0;  ///< the value, if `status` is `counted`
 };
 
-/// Returns the value of a job from its row. The row is null for a job that has not ended. Throws Error of the command
-/// line, naming `option`, if the column holds text.
+/// Returns the value of a job from its row. The row is null for a job that has not ended. Throws Error with the place
+/// "command line" if the column holds text; the message names `option`.
 JobValue value_of_job(const Row* row, const std::string& column, const std::string& option);
 
-/// Numbers of jobs, or of pairs, by status. A job that a condition leaves out counts as left out, whether it failed or
-/// not.
+/// Numbers of jobs, or of pairs, by status. A job that a condition leaves out counts as left out, even if it failed.
 class StatusCounts {
  public:
   void add(ValueStatus status) { ++counts_.at(static_cast<std::size_t>(status)); }
   int of(ValueStatus status) const { return counts_.at(static_cast<std::size_t>(status)); }
   int all() const { return std::accumulate(counts_.begin(), counts_.end(), 0); }
   bool all_are(ValueStatus status) const { return of(status) == all(); }
-  /// Returns "2 failed, 1 unfinished": those numbers of `statuses` that are not 0. `behind` follows each number.
+  /// Returns the nonzero counts of `statuses`: "2 failed, 1 unfinished". Inserts the text `behind` after each number.
   std::string words(const std::vector<ValueStatus>& statuses, const std::string& behind = "") const;
 
  private:

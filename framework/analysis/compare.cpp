@@ -35,7 +35,7 @@ using JobOutcomes = std::map<Values, JobOutcome>;
 struct Collected {
   Values values;
   JobOutcomes outcomes;
-  int never = 0;  ///< number of counted jobs that never reached the goal of the occasion
+  int never = 0;  ///< number of counted jobs that never reached the goal of Comparison::occasion
 };
 
 bool contains(const Values& names, const std::string& name) {
@@ -87,8 +87,8 @@ std::vector<Collected> collect(const Sweep& sweep, const std::vector<Row>& resul
       if (outcome.value.status == ValueStatus::counted && row->flag(kReached) == false) ++groups.back().never;
       Values pairing;
       for (const std::string& key : paired) pairing.push_back(value_of(sweep, *job, key));
-      // A list may contain the same job several times. The first copy then pairs with the first copy in the other
-      // group, and so on.
+      // A list may contain the same job several times. The first copy in one group is then paired with the first copy
+      // in the other group, and so on.
       pairing.emplace_back();
       JobOutcomes& outcomes = groups.back().outcomes;
       for (int repeat = 1; !outcomes.emplace(pairing, outcome).second; ++repeat)
@@ -140,7 +140,7 @@ ComparedPair compare_pair(const std::vector<Collected>& groups, std::size_t firs
   const auto add = [&](const JobOutcome& one, const JobOutcome& other) {
     const ValueStatus status = std::min(one.value.status, other.value.status);
     if (status == ValueStatus::counted) {
-      // Pairs with the same seed have the same unit, and so have copies of one pair of runs.
+      // Pairs with the same seed have the same unit. Copies of one pair of runs also have the same unit.
       const std::string unit = one.unit + "-" + other.unit;
       of_a.add(unit, one.value.value);
       of_b.add(unit, other.value.value);
@@ -177,17 +177,18 @@ void adjust(std::vector<ComparedPair>& pairs) {
   }
 }
 
-/// Returns a name without blanks, since "weighted,rbf" also names the group "weighted, rbf".
+/// Returns a name without blanks, so that "weighted,rbf" also names the group "weighted, rbf".
 std::string without_blanks(const std::string& name) { return boost::algorithm::erase_all_copy(name, " "); }
 
-/// Groups that are compared with each other. These are the groups of one scene, because results on different scenes are
-/// not comparable. If all keys belong to the scene, the block has all groups.
+/// Groups that are compared with each other: the groups of one scene, because results on different scenes are not
+/// comparable. If all keys of `--by` belong to the scene, one block has all groups.
 struct ComparedBlock {
   std::vector<std::size_t> groups;
   std::size_t baseline = 0;
 };
 
-/// Returns for each key whether it belongs to the scene. If all keys do, returns false for all.
+/// Returns for each key whether it belongs to the scene. If all keys belong to the scene, returns false for each, so
+/// that the scenes are compared.
 std::vector<bool> scene_places(const Sweep& sweep, const Values& by) {
   const Values scenes = scene_keys(sweep);
   std::vector<bool> out;
@@ -196,7 +197,7 @@ std::vector<bool> scene_places(const Sweep& sweep, const Values& by) {
   return out;
 }
 
-/// Returns those values of a group whose flag in `places` equals `wanted`, joined by commas.
+/// Returns the values whose flag in `places` equals `wanted`, joined by commas.
 std::string values_at(const Values& values, const std::vector<bool>& places, bool wanted) {
   Values out;
   for (std::size_t i = 0; i < values.size(); ++i) {
@@ -205,8 +206,8 @@ std::string values_at(const Values& values, const std::vector<bool>& places, boo
   return fmt::format("{}", fmt::join(out, ", "));
 }
 
-/// Returns the blocks of the groups `kept`. These are indices of the groups with jobs. The baseline of a block is its
-/// first group.
+/// Returns the blocks of groups. `kept`: indices of the groups with jobs that satisfy the condition. The baseline of a
+/// block is its first group.
 std::vector<ComparedBlock> blocks_of(const std::vector<ComparedGroup>& groups, const std::vector<std::size_t>& kept,
                                      const std::vector<bool>& scenes) {
   std::vector<ComparedBlock> out;
@@ -219,8 +220,8 @@ std::vector<ComparedBlock> blocks_of(const std::vector<ComparedGroup>& groups, c
   return out;
 }
 
-/// Sets the baselines to the group that --baseline names. If --baseline has only the values that do not belong to the
-/// scene, each scene has such a group as its baseline. Removes blocks that have no such group.
+/// Sets the baseline of each block to the group that --baseline names. --baseline may leave out the values of the
+/// scene; it then names one group per scene. Removes blocks without such a group. Throws Error if no block has one.
 void choose_baselines(std::vector<ComparedBlock>& blocks, const std::vector<ComparedGroup>& groups,
                       const std::vector<bool>& scenes, const std::string& name) {
   const std::string wanted = without_blanks(name);
@@ -248,7 +249,7 @@ void choose_baselines(std::vector<ComparedBlock>& blocks, const std::vector<Comp
 
 /// Adds to `apart` the indices of pairing keys for which the two groups have no value in common.
 void find_apart(const JobOutcomes& a, const JobOutcomes& b, std::set<std::size_t>& apart) {
-  const std::size_t places = a.begin()->first.size() - 1;  // The last value only separates equal jobs.
+  const std::size_t places = a.begin()->first.size() - 1;  // The last value only distinguishes copies of a job.
   for (std::size_t place = 0; place < places; ++place) {
     std::set<std::string> values;
     for (const auto& [pairing, outcome] : a) values.insert(pairing[place]);
@@ -273,7 +274,7 @@ void add_pairs(const std::vector<ComparedBlock>& blocks, const std::vector<Colle
   adjust(out.pairs);
 }
 
-/// Throws Error if no group has a value; the error has the reason.
+/// Throws Error with the reason if no group has a value.
 void check_values(const Comparison& made, const Sweep& sweep) {
   int without_value = 0;
   for (const ComparedGroup& group : made.groups) {

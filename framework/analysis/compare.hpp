@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Comparison of groups of a sweep's jobs: mean and spread per group, and paired differences between groups. A pair
-// consists of two jobs that have equal values of every other swept key. Seeds are the units of statistics. The
-// bootstrap resamples all jobs of a seed together, and tests rank the means per seed. The output is in
-// analysis/compare_report.hpp.
+// consists of two jobs that have equal values of every other swept key. If seeds are swept, they are the units of
+// statistics: the bootstrap resamples all jobs of a seed together, and tests rank the means per seed. Otherwise jobs
+// are the units (JobUnits). The output is in analysis/compare_report.hpp.
 #pragma once
 
 #include "analysis/bootstrap.hpp"
@@ -21,14 +21,14 @@
 namespace palpate {
 
 /// Extent of a comparison: means of the groups, means with intervals, or means with intervals and all pairs. Intervals
-/// and pairs take most of the time.
+/// and pairs take most of the computing time.
 enum class CompareExtent { means, intervals, pairs };
 
 /// Arguments of compare().
 struct CompareQuery {
   std::vector<std::string> by;  ///< swept keys; jobs with equal values of these keys form a group
   std::string metric;           ///< column of results.csv
-  /// condition on columns of results.csv, or null; jobs that do not satisfy it are left out
+  /// condition on columns of results.csv, or null for none; other jobs are left out
   const Condition* where = nullptr;
   /// Name of the group with which all others are compared: "weighted, rbf". If the scene is one of the keys, "weighted"
   /// names the group `weighted` of each scene.
@@ -41,22 +41,24 @@ struct ComparedGroup {
   std::string name;  ///< values in the order of the keys: "weighted, rbf"; "(none)" for a key that the jobs lack
   std::vector<std::string> values;  ///< the values in `name`, as a list
   StatusCounts counts;
-  /// number of jobs that never reached the goal of the occasion; they count with their final values
+  /// number of jobs that never reached the goal of Comparison::occasion; such jobs count with their final values
   int never = 0;
-  MeanEstimate mean;  ///< mean over the jobs with a value; its clusters are seeds, or jobs if jobs are the units
+  MeanEstimate mean;  ///< mean over the jobs with a value; the clusters are the units of JobUnits
   double median = 0.0;
   double low_10 = 0.0;  ///< `low_10` and `high_90` are the 10 % and 90 % quantiles over the jobs
   double high_90 = 0.0;
 };
 
-/// Differences `first` minus `second`, over the pairs of jobs in which both have a value.
+/// Differences `first` minus `second`, over the pairs in which both jobs have a value.
 struct ComparedPair {
   std::size_t first = 0;  ///< `first` and `second` are indices in Comparison::groups
   std::size_t second = 0;
-  /// Pairs of jobs without two values, by status. A pair counts as left out if the condition keeps one of its jobs.
+  /// Pairs of jobs without two values, by status. A pair counts as left out if the condition excludes one of its jobs
+  /// and keeps the other.
   StatusCounts lost;
-  MeanEstimate difference;  ///< mean difference; it counts pairs of jobs, and its clusters are seeds
-  /// Mean of the first divided by mean of the second; nullopt if not requested or not defined.
+  /// mean difference; `count` is the number of pairs, and clusters are pairs with equal units (JobUnits)
+  MeanEstimate difference;
+  /// Mean of the first group divided by mean of the second group; nullopt if not requested or not defined.
   std::optional<RatioEstimate> ratio;
   SignedRank test;  ///< test of the means per unit (JobUnits)
   /// p of the test, adjusted for all pairs of this comparison; nullopt for a single pair
@@ -67,36 +69,37 @@ struct Comparison {
   Column metric;
   std::vector<std::string> by;
   bool by_seed = false;  ///< whether seeds are the units (JobUnits)
-  /// the other swept keys that vary; the two jobs of a pair have equal values of them
+  /// swept keys that vary and are not in `by`; the two jobs of a pair have equal values of these keys
   std::vector<std::string> pairing;
   /// Keys of `pairing` for which some compared groups have no value in common. Such groups have no pairs.
   std::vector<std::string> apart;
-  std::vector<ComparedGroup> groups;  ///< sorted by their values of the keys; values are in the order of the sweep
+  std::vector<ComparedGroup> groups;  ///< sorted by their values of `by`, which are in the order of the sweep
   std::vector<ComparedPair> pairs;    ///< pairs of each group with each earlier group, or only with the baseline
-  /// Returns the means of all groups that have one.
+  /// Returns the means of all groups with values.
   std::vector<double> means() const;
-  /// Returns whether some units have several values although seeds are not the units. Such values come from copies of a
-  /// run.
+  /// Returns whether jobs are the units and a unit has several values, which then come from copies of a run.
   bool has_copies() const;
 
-  /// Number of groups with jobs. A group without jobs, because the condition leaves them all out, has no pairs.
+  /// Number of groups with jobs that satisfy the condition. Other groups have no pairs.
   std::size_t compared = 0;
   bool one_baseline = false;
-  bool scenes_apart = false;  ///< whether the scene is one of the keys; groups of different scenes form no pair
-  bool ratios = false;        ///< whether ratios were requested
-  std::optional<Checkpoint> occasion;  ///< point of the runs at which jobs are compared; nullopt: the end of each job
+  /// whether the groups belong to several scenes and `by` also has other keys; groups of different scenes are then not
+  /// paired
+  bool scenes_apart = false;
+  bool ratios = false;                 ///< whether ratios were requested
+  std::optional<Checkpoint> occasion;  ///< checkpoint at which jobs are compared; nullopt for the end of each job
   int jobs = 0;                        ///< number of jobs of the sweep
   StatusCounts left_out;               ///< jobs that the condition leaves out, by their status without the condition
 };
 
-/// Largest number of groups per scene for which all pairs are compared. With more groups, only pairs with the baseline
-/// are compared. The default baseline is the first group.
+/// Largest number of groups per scene for which all pairs are compared. With more groups, each group is compared only
+/// with the baseline, by default the first group.
 inline constexpr std::size_t kMostGroupsInPairs = 8;
 
-/// Compares the jobs of `sweep`, whose rows of results.csv are `results`. Throws Error of the command line for keys
-/// that are not swept, an unusable metric, and an unknown baseline. Also throws it for a condition with unknown columns
-/// or without matching jobs. A metric is unusable if it does not exist, is not a result, holds no numbers, or has no
-/// value in any job.
+/// Compares the jobs of `sweep`. `results` are the rows of results.csv. Throws Error with the place "command line" for
+/// keys that are not swept, an unusable metric, an unknown baseline, and a condition with unknown columns or without
+/// matching jobs. A metric is unusable if it does not exist, is not a result, holds no numbers, or has no value in any
+/// job.
 Comparison compare(const Sweep& sweep, const std::vector<Row>& results, const CompareQuery& query);
 
 }  // namespace palpate

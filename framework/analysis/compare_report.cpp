@@ -23,7 +23,8 @@ std::string keys_text(const std::vector<std::string>& keys) {
   return one_line(fmt::format("{}", fmt::join(keys, ", ")));
 }
 
-/// Returns a scale like that of the groups, but with enough decimals for two digits of the narrowest interval.
+/// Returns the scale `groups` with enough decimals to show half the width of the narrowest interval with two
+/// significant digits.
 Scale difference_scale(const Comparison& comparison, const Scale& groups) {
   std::vector<double> widths;
   for (const ComparedPair& pair : comparison.pairs) {
@@ -35,13 +36,14 @@ Scale difference_scale(const Comparison& comparison, const Scale& groups) {
   return scale;
 }
 
-/// Returns a quantile. Whole numbers have no decimals, because quantiles mostly equal one of the values.
+/// Returns a quantile as text. A whole number has no decimals, because a quantile of counts mostly equals one of the
+/// counts.
 std::string short_number(const Scale& scale, double value) {
   const double shown = value / scale.factor;
   return shown == std::round(shown) && std::abs(shown) < 1e6 ? fmt::format("{:.0f}", shown) : scale.number(value);
 }
 
-/// Returns whether pairs show numbers instead of the names of groups, because long names would make the lines too long.
+/// Returns whether pairs show the numbers of groups instead of their names. Long names would make the lines too long.
 bool numbered(const Comparison& comparison) {
   constexpr std::size_t kLongest = 16;
   return std::any_of(comparison.groups.begin(), comparison.groups.end(),

@@ -17,10 +17,11 @@ std::string compare_legend(const std::vector<Comparison>& comparisons);
 
 /// Returns a table of means in Markdown, for a paper or a README. It has one row per group and number of taps, and one
 /// column per metric with its unit. Remarks on missing values follow the table. All comparisons must have the same
-/// groups. Comparisons at the same occasion are adjacent, and each occasion has the same metrics in the same order.
+/// groups. Comparisons at the same checkpoint (Comparison::occasion) must be adjacent, and each checkpoint must have
+/// the same metrics in the same order.
 std::string means_table(const std::vector<Comparison>& comparisons);
-/// Returns the table of means_table() in LaTeX for the package booktabs. It shows means with intervals, and n, the
-/// number of jobs with a value. LaTeX comments before the table explain the numbers and list missing values.
+/// Returns the table of means_table() in LaTeX for the package booktabs. It shows means with intervals, and the number
+/// n of jobs with a value. LaTeX comments before the table explain the numbers and list missing values.
 std::string latex_table(const std::vector<Comparison>& comparisons);
 
 /// Returns one row per group, followed by one row per pair, in SI units. `where` is the text of the condition, or "" if

@@ -21,8 +21,8 @@ namespace fs = std::filesystem;
 constexpr double kPointsPerInch = 72.0;
 constexpr double kSvgDpi = 96.0;
 
-/// Returns the first line that has words. gnuplot's messages begin with lines of blanks and a caret, which points to a
-/// position in the script.
+/// Returns the first line with words. gnuplot's messages begin with lines that only mark a position in the script by a
+/// caret.
 std::string first_words(const std::string& text) {
   std::istringstream lines(text);
   std::string line;

@@ -35,7 +35,7 @@ struct JobCurve {
   }
 };
 
-/// Returns the positions of the points of a group's curve.
+/// Returns the x values (taps or seconds) of the points of a group's curve.
 std::vector<double> points_of(const std::vector<JobCurve>& jobs) {
   std::vector<double> out;
   if (jobs.empty()) return out;
@@ -73,8 +73,8 @@ bool has_value(const std::vector<double>& values) {
   return std::any_of(values.begin(), values.end(), [](double one) { return std::isfinite(one); });
 }
 
-/// Returns the status of a job in the curve of its group. `metric` has the job's values after each tap; it is null if
-/// the job has none.
+/// Returns the status of a job in the curve of its group. `metric`: values of the job after each tap; null if the job
+/// has no values.
 ValueStatus status_of(const JobResult& job, const std::vector<double>* metric, const JobCondition& where,
                       const CurvesQuery& query) {
   const ValueStatus status = value_of_job(job.row, query.metric, "--metric").status;
@@ -83,7 +83,8 @@ ValueStatus status_of(const JobResult& job, const std::vector<double>* metric, c
   return metric != nullptr && has_value(*metric) ? ValueStatus::counted : ValueStatus::without_value;
 }
 
-/// Makes the curve of a group. The first `scenes` values of the group belong to the scene.
+/// Makes the curve of a group. The first `scenes` values of `group.values` belong to the scene, and the others to the
+/// keys of `--by`.
 GroupCurve make_curve(const JobGroup& group, std::size_t scenes, const std::vector<TapValues>& values,
                       const JobUnits& units, const JobCondition& where, const CurvesQuery& query) {
   const auto split = group.values.begin() + static_cast<std::ptrdiff_t>(scenes);
@@ -107,7 +108,7 @@ GroupCurve make_curve(const JobGroup& group, std::size_t scenes, const std::vect
   return curve;
 }
 
-/// Throws Error if there is nothing to draw; the error has the reason.
+/// Throws Error with the reason if there is nothing to draw.
 void check_points(const GroupCurves& made, const Sweep& sweep) {
   if (made.curves.empty())
     throw Error("command line", fmt::format("--where: matches none of the {} jobs", made.jobs),

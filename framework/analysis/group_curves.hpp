@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Curves of groups over their taps: the mean of a summary field with its 95 % interval, against taps or robot time. The
-// command, figures, CSV files, pages and the Python module show these numbers.
+// Curves of groups of jobs: the mean of a summary field with its 95 % interval, against taps or robot time. The command
+// `palpate curves`, figures, CSV files, pages and the Python module show these numbers.
 #pragma once
 
 #include "analysis/column.hpp"
@@ -26,23 +26,24 @@ using TapValues = std::map<std::string, std::vector<double>>;
 /// Returns whether any job has a value of the column after at least one tap.
 bool any_has(const std::vector<TapValues>& jobs, const std::string& column);
 
-/// Returns a function that stores the columns of each job in `values`, which has an element per job. The elements of
+/// Returns a function that stores the columns of each job in `values`, which has one element per job. The elements of
 /// jobs without stored summaries stay empty. `values` must outlive the function.
 TapSummaries::Use keep_values(std::vector<TapValues>& values, std::vector<std::string> columns);
 
 struct CurvesQuery {
-  std::vector<std::string> by;         ///< swept keys; jobs with equal values of them and of the scene form a group
+  /// swept keys; jobs with equal values of these keys and of the scene form a group
+  std::vector<std::string> by;
   std::string metric;                  ///< column of results.csv
   std::string against = kAgainstTaps;  ///< kAgainstTaps or kAgainstTime
   const Condition* where = nullptr;    ///< condition on columns of results.csv; other jobs are left out; null for none
-  /// Whether all intervals are Student's t, which is fast and used on pages. Otherwise they are those of
-  /// mean_of_sample().
+  /// Whether all intervals are Student's t intervals, which are fast to compute and used on pages. Otherwise
+  /// mean_of_sample() computes the intervals.
   bool students = false;
 };
 
 struct CurvePoint {
   double at = 0.0;    ///< position on the axis: taps or seconds
-  MeanEstimate mean;  ///< mean over the jobs with a value at this point; its clusters are the units of JobUnits
+  MeanEstimate mean;  ///< mean over the jobs with a value at this point; the clusters are the units of JobUnits
 };
 
 struct GroupCurve {
@@ -60,7 +61,7 @@ struct GroupCurve {
 struct GroupCurves {
   Column metric;
   Column against;
-  /// those scene_keys() that are not in `by`; each combination of their values has its own curves
+  /// the scene_keys() that are not in `by`; each combination of values of these keys has its own curves
   std::vector<std::string> scenes;
   std::vector<std::string> by;
   bool by_seed = false;            ///< whether seeds are the units (JobUnits)
@@ -74,14 +75,14 @@ struct GroupCurves {
 /// Returns the default keys of groups: all keys that vary except the seed and the keys of the scene.
 std::vector<std::string> curve_keys(const Sweep& sweep);
 
-/// Makes the curves of the jobs of `sweep`, whose rows of results.csv are `results`. `values` must contain at least the
+/// Makes the curves of the jobs of `sweep`. `results` are the rows of results.csv. `values` must contain at least the
 /// metric and the axis.
 ///
 /// Against taps, a group has one point per tap up to the longest of its jobs. Against robot time, it has 60 points. The
-/// first is the time at which all its jobs have made a tap, and the last is the end of its last job. At each point, a
-/// job counts with its value after its last tap up to this time. A job that has ended counts with its final value, as
-/// in `compare --at`. Jobs that failed or have not ended are left out. Throws the errors of compare(), and Error if
-/// there is nothing to draw.
+/// first point is the time at which all jobs of the group have made a tap. The last point is the end of the last job.
+/// At each point, a job counts with its value after the last tap that it has made by then. A job that has ended counts
+/// with its final value, as in `compare --at`. Jobs that failed or have not ended are left out. Throws the errors of
+/// compare(), and Error if there is nothing to draw.
 GroupCurves make_group_curves(const Sweep& sweep, const std::vector<Row>& results, const std::vector<TapValues>& values,
                               const CurvesQuery& query);
 

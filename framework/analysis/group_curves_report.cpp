@@ -29,8 +29,8 @@ std::pair<std::size_t, std::size_t> units_at_points(const GroupCurves& curves) {
   return out;
 }
 
-/// Returns the positions of points that are evenly spaced along the longest curve. The last point is the end of the
-/// curve.
+/// Returns the x values (taps or seconds) of up to four points, evenly spaced along the longest curve. The last one is
+/// the end of the curve.
 std::vector<double> shown_places(const GroupCurves& curves) {
   const auto longest =
       std::max_element(curves.curves.begin(), curves.curves.end(),

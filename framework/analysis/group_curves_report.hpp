@@ -11,18 +11,19 @@
 
 namespace palpate {
 
-/// Returns the unit and the digits for the means of all curves.
+/// Returns the unit and the number of digits for the means of all curves.
 Scale metric_scale(const GroupCurves& curves);
 
-/// Returns the number of units at the points: "12 seeds", "10 to 12 seeds". If the seed is not swept, the units are
-/// jobs.
+/// Returns the number of units of statistics (JobUnits) at the points: "12 seeds", "10 to 12 seeds". If the seed is not
+/// swept, the units are jobs.
 std::string curve_units_words(const GroupCurves& curves);
 
-/// Returns one line per group with mean and interval at four points along the axis, and the remarks.
+/// Returns a table with one line per group, followed by the remarks. A line has the mean and its interval at four
+/// points along the axis.
 std::string curves_table(const GroupCurves& curves);
 
-/// Returns remarks, one per line, about jobs that are missing at all or some points, jobs that ended early, and few
-/// units.
+/// Returns remarks, one per line. They report jobs that are missing at some or all points, jobs that ended early, and a
+/// small number of units.
 std::string curve_remarks(const GroupCurves& curves);
 
 /// Returns one row per point of each curve, in SI units. A row has `metric`, `against`, the keys of scene and group,

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Groups of a sweep's jobs by the values of keys, and the units of their statistics. Tables, pictures, `palpate pareto`
-// and `palpate compare` use them. On the page of a sweep the reader chooses the keys, so there sweep_numbers.js forms
-// the groups.
+// and `palpate compare` use them. On the page of a sweep, the reader chooses the keys, and sweep_numbers.js forms the
+// groups.
 #pragma once
 
 #include "analysis/column.hpp"
@@ -38,26 +38,26 @@ std::vector<std::string> shown_values(const std::vector<std::string>& values);
 std::vector<JobGroup> group_jobs(const Sweep& sweep, const std::vector<Row>& results,
                                  const std::vector<std::string>& keys);
 
-/// Returns the values of a column in ascending order, over the done jobs that have one. Throws the errors of
+/// Returns the values of a column in ascending order, over the done jobs that have a value. Throws the errors of
 /// value_of_job().
 std::vector<double> values_of(const JobGroup& group, const std::string& column, const std::string& option);
 
-/// Returns the swept keys that define a setting. These are all except the seed.
+/// Returns the swept keys that define a setting: all except the seed.
 std::vector<std::string> setting_keys(const Sweep& sweep);
 
-/// Returns those of `keys` that have several values in the sweep.
+/// Returns the keys among `keys` that have several values in the sweep.
 std::vector<std::string> varying_keys(const Sweep& sweep, const std::vector<std::string>& keys);
 
-/// Returns those keys of the tapped scene (`scene` and the keys below it) that have several values. Results on
-/// different scenes are not comparable. A mean, a band or a front therefore uses only the jobs of one scene.
+/// Returns the swept keys of the tapped scene (`scene` and `scene.*`) that have several values. Results on different
+/// scenes are not comparable. A mean, a band or a front therefore uses only the jobs of one scene.
 std::vector<std::string> scene_keys(const Sweep& sweep);
 
-/// Throws Error of the command line unless the keys of --by can form groups. The keys must be swept, differ from each
-/// other, and not include the seed.
+/// Throws Error with the place "command line" unless the keys of --by can form groups. The keys must be swept, differ
+/// from each other, and not include the seed.
 void check_group_keys(const Sweep& sweep, const std::vector<std::string>& keys);
 
-/// Returns the column of --metric. A name that is both a swept key and a result means the result (see result_of()).
-/// Throws Error of the command line for a swept key that is not a result. Also throws the errors of find_column().
+/// Returns the column of --metric. A name that is both a swept key and a result refers to the result (see result_of()).
+/// Throws Error with the place "command line" for a swept key that is not a result, and the errors of find_column().
 Column find_metric(const Sweep& sweep, const std::string& name, const std::vector<std::string>& columns);
 
 /// A condition on the columns of results.csv, which selects jobs.
@@ -73,12 +73,13 @@ class JobCondition {
   const Sweep& sweep_;
   const std::vector<std::string>& columns_;
   const Condition* where_;
-  std::vector<std::string> names_;  ///< columns, followed by keys that are not columns
+  /// names that the condition may use: the columns, then the swept keys that are not columns
+  std::vector<std::string> names_;
 };
 
 /// The unit of statistics of each job. If several seeds are swept, seeds are the units, because jobs with the same seed
-/// share all random draws and are not independent. Otherwise jobs are the units. Copies of a run form one unit; copies
-/// are equal in all columns that do not depend on the machine.
+/// share all random draws and are not independent. Otherwise jobs are the units, and copies of a run form one unit.
+/// Copies have equal values in all columns that do not depend on the machine.
 class JobUnits {
  public:
   /// `sweep` must outlive the object.
@@ -86,7 +87,7 @@ class JobUnits {
 
   bool are_seeds() const { return are_seeds_; }
 
-  /// Returns the name of the job's unit. If jobs are the units, the name is "" for a job that has not ended.
+  /// Returns the name of the job's unit. If jobs are the units, a job that has not ended has the name "".
   std::string of(const JobResult& job) const;
 
  private:
@@ -109,7 +110,7 @@ class UnitClusters {
 /// Returns the value of a key in a job; "" if the key is not swept.
 std::string value_of(const Sweep& sweep, const Job& job, const std::string& key);
 
-/// Returns a job's values of some keys on one line: "acquisition=weighted, taps=17". Without the keys, the line is
+/// Returns a job's values of some keys on one line: "acquisition=weighted, taps=17". If `with_keys` is not set, returns
 /// "weighted, 17". Keys without a value are left out.
 std::string key_words(const Sweep& sweep, const Job& job, const std::vector<std::string>& keys, bool with_keys);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Means with their intervals as text and as fields of rows. Numbers in texts have the format of
+// Output of means and their intervals, as text and as fields of rows. Texts format numbers as in
 // config/display_units.hpp.
 #pragma once
 
@@ -28,20 +28,21 @@ std::string Scale::estimate(const Mean& mean) const {
   return with_interval(mean.mean, mean.interval, [&](double value) { return number(value); });
 }
 
-/// Returns the number of units of statistics: "5 seeds", "1 job".
+/// Returns the number of units of statistics (JobUnits) as text: "5 seeds", "1 job".
 std::string units_words(std::size_t units, bool seeds);
-/// Returns "3 to 5 seeds" if the numbers differ.
+/// Returns "3 to 5 seeds", or "5 seeds" if both numbers are 5.
 std::string units_words(std::size_t least, std::size_t most, bool seeds);
 
-/// Number of seeds, or jobs, below which a remark points out that there are few. With fewer units, intervals miss the
-/// true mean clearly more often than 5 times in 100.
+/// Number of seeds or jobs below which a remark warns that there are few. With fewer, 95 % intervals miss the true mean
+/// clearly more often than 5 times in 100.
 inline constexpr std::size_t kEnoughUnits = 10;
 
-/// Returns a remark about a mean over few seeds or jobs. Returns "" if there are at least kEnoughUnits. `least` is the
+/// Returns a remark about a mean over few seeds or jobs; "" if `units` is at least kEnoughUnits. `least` is the
 /// smallest number of units that gives an interval.
 std::string few_words(std::size_t units, bool seeds, std::size_t least);
 
-/// Returns a remark about how many of a group's jobs are copies of another run, if jobs are the units.
+/// Returns a remark about the number of jobs in a group that are copies of another run. It applies if jobs are the
+/// units.
 std::string copies_words(const std::string& name, std::size_t jobs, std::size_t units);
 
 /// Adds the fields `prefix`mean, `prefix`low_95 and `prefix`high_95. Missing values are null.

@@ -13,15 +13,16 @@
 namespace palpate {
 namespace {
 
-/// Significant digits of the least mean in a table without intervals. Tens and hundreds then have no decimals.
+/// Significant digits of the smallest mean in a table without intervals. If all means are 10 or more, they have no
+/// decimals.
 constexpr int kDigits = 2;
 
-/// Significant digits of the least mean in a table with intervals, used for means that have no interval. Text tables
-/// use the same number.
+/// Significant digits of the smallest mean in a table with intervals. This number applies only to means without an
+/// interval. Text tables use the same number.
 constexpr int kDigitsBesideIntervals = 3;
 
-/// Returns the scale of a metric over all rows. The first comparison of the metric has the index `first`. The others
-/// follow at distances of `step`.
+/// Returns the scale of a metric over all rows. The comparisons of this metric have the indices `first`, `first` +
+/// `step`, `first` + 2 * `step` and so on.
 Scale scale_of(const std::vector<Comparison>& comparisons, std::size_t first, std::size_t step, int digits) {
   std::vector<double> means;
   for (std::size_t i = first; i < comparisons.size(); i += step) {
@@ -37,7 +38,7 @@ int decimals_of(const MeanInterval& ends, double factor) {
   return half > 0.0 ? std::clamp(1 - static_cast<int>(std::floor(std::log10(half))), 0, 9) : 0;
 }
 
-/// Returns "$3.21\ [3.02, 3.40]$". It is in math mode, in which a hyphen is a minus sign. Mean and bounds have the same
+/// Returns "$3.21\ [3.02, 3.40]$". LaTeX's math mode prints a hyphen as a minus sign. Mean and bounds have the same
 /// number of decimals, which depends on the width of the interval.
 std::string latex_estimate(const Scale& scale, const MeanEstimate& mean) {
   if (mean.count == 0) return "--";
@@ -53,8 +54,8 @@ std::string latex_estimate(const Scale& scale, const MeanEstimate& mean) {
 
 bool has_taps(const Comparison& one) { return one.occasion && one.occasion->taps(); }
 
-/// Layout of the comparisons: one comparison per metric for the first occasion, then one per metric for the next
-/// occasion, and so on.
+/// Order of the comparisons: all metrics at the first checkpoint (Comparison::occasion), then all metrics at the next
+/// checkpoint, and so on.
 struct MeansLayout {
   std::size_t metrics = 0;
   std::vector<Scale> scales;  ///< one scale per metric
@@ -75,8 +76,8 @@ MeansLayout layout_of(const std::vector<Comparison>& comparisons, int digits) {
   return out;
 }
 
-/// Adds one row per group and occasion. A row has the names of the group, followed by the cells that `show` adds for
-/// the means of each metric.
+/// Returns a table with one row per group and checkpoint. A row has the values of the keys that define the group,
+/// followed by the cells that `show` adds for the means of all metrics.
 template <class ShowMeans>
 Table table_of(const std::vector<Comparison>& comparisons, const MeansLayout& layout, const ShowMeans& show) {
   Table out;

@@ -50,7 +50,8 @@ struct PlotAxis {
   double high = 1.0;
   bool logarithmic = false;
 
-  /// Returns "mean low high". On a logarithmic axis, ends of the interval that are not positive are clipped.
+  /// Returns "mean low high". On a logarithmic axis, ends of the interval below the axis are moved to its lower end,
+  /// because they may not be positive.
   std::string columns(const MeanEstimate& estimate) const {
     const MeanInterval ends = interval_or_mean(estimate);
     const auto clipped = [&](double value) { return logarithmic ? std::max(value, low) : value; };
@@ -93,7 +94,7 @@ PlotAxis plot_axis(const Pareto& pareto, const Column& key, Field field, const s
   return axis;
 }
 
-constexpr double kKeyLeft = 0.635;  // left edge of the key, as a share of the picture's width
+constexpr double kKeyLeft = 0.635;  // left edge of the legend, as a share of the picture's width
 
 /// Colours of the fronts, one per scene.
 constexpr std::array<const char*, 5> kFrontColours{"#0b5394", "#00795a", "#7a3e9d", "#8c6d46", "#404040"};
@@ -101,7 +102,7 @@ constexpr const char* kChosenColour = "#c1440e";
 
 const char* front_colour(const Setting& setting) { return kFrontColours[setting.scene % kFrontColours.size()]; }
 
-/// Returns the clauses for the key: number and name of each setting on the front, and those of the chosen setting.
+/// Returns the plot clauses for the legend: number and name of each setting on the front and of the chosen setting.
 std::vector<std::string> named_settings(const Pareto& pareto, const Setting* chosen) {
   constexpr std::size_t kLongest = 48;  // number of letters that fit next to the plot
   constexpr std::size_t kMostLines = 26;

@@ -9,20 +9,20 @@
 
 namespace palpate {
 
-/// Returns the number of units of the settings: "20 seeds", "18 to 20 seeds". If the seed is not swept, the units are
-/// jobs.
+/// Returns the number of units of statistics (JobUnits) per setting: "20 seeds", "18 to 20 seeds". If the seed is not
+/// swept, the units are jobs.
 std::string seeds_words(const Pareto& pareto);
 
 /// Returns a table with one line per setting in readable units, the numbers on the front, and remarks.
 std::string pareto_table(const Pareto& pareto);
 
-/// Returns one row per setting. It has the number on the front, keys, counts of jobs, means, and ends of the intervals,
-/// in SI units.
+/// Returns one row per setting. A row has the number on the front, keys, counts of jobs, means, and ends of the
+/// intervals, in SI units.
 std::vector<Row> pareto_rows(const Pareto& pareto);
 
-/// Returns a gnuplot script without the settings of terminal and output. It draws every setting with its intervals, the
-/// front as a numbered step line, and the names of the settings on the front. `bound` (optional) becomes a line, and
-/// `chosen` (may be null) becomes a mark.
+/// Returns a gnuplot script without the settings of terminal and output. The script draws every setting with its
+/// intervals, the front as a numbered step line, and the names of the settings on the front. It draws `bound` as a line
+/// and marks the setting `chosen`; `chosen` may be null.
 std::string pareto_script(const Pareto& pareto, const std::string& title, const std::optional<double>& bound,
                           const Setting* chosen);
 

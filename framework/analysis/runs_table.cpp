@@ -29,7 +29,7 @@ using State = RunStatus::State;
 
 constexpr const char* kIou = "footprint_iou";
 
-/// Returns the names if there are at most three different ones, else "N `noun`".
+/// Returns the different names if there are at most three, else their number and `noun`, such as "5 shapes".
 std::string in_short(const std::vector<std::string>& names, const char* noun) {
   constexpr std::size_t kShown = 3;
   std::vector<std::string> out;
@@ -82,7 +82,7 @@ std::string swept_words(const Sweep& sweep) {
   return fmt::format("{}", fmt::join(out, ", "));
 }
 
-/// Returns whether a calling program chose a tap by its scores, instead of the config's acquisition.
+/// Returns whether the scores of a calling program chose any tap, instead of the acquisition in the config.
 bool by_callers_scores(const fs::path& directory, const Row& config) {
   if (config.text("backend.type") != "caller") return false;
   const std::vector<Row> taps = read_run_record(directory).taps;
@@ -102,7 +102,7 @@ void add_run(ListedRecord& out, const fs::path& directory, const Row& config) {
   row.add("strategy", text_or_null(first_of({config.text("backend.label"), by_caller, strategy_of(origins, config)})));
   row.add("scene", text_or_null(scene_of(origins, config)));
   const std::optional<Row> summary = read_summary(directory);
-  // Taps are counted only for runs that have not ended, because the summary of a run has the number.
+  // Taps are counted only for runs that have not ended; for others, the summary has the number.
   const RunStatus status = summary ? read_ending(directory) : read_status(directory);
   row.add("taps", summary ? summary->number("taps").value_or(0.0) : status.taps);
   const auto add_error = [&](const std::string& field) {

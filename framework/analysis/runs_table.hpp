@@ -24,19 +24,19 @@ struct ListedRecord {
   std::string swept;  ///< swept keys of a sweep: "seed (30), acquisition (2)"
 };
 
-/// Reads the run or sweep in `directory`. Strategy and scene have the name of their group in the config. Without a
-/// group, they are described by the type of the acquisition and the shapes of the objects. Throws Error for a damaged
-/// record.
+/// Reads the run or sweep in `directory`. The fields `strategy` and `scene` contain the names of the config groups that
+/// were chosen. If the config names no group, they contain the type of the acquisition and the shapes of the objects.
+/// Throws Error for a damaged record.
 ListedRecord list_record(const std::filesystem::path& directory);
 
-/// Adds the field `apart` to each row: the differences from other records with the same name, or null if there are
+/// Adds the field `apart` to each row: its differences from other records with the same name, or null if there are
 /// none. The differences are the swept keys and the distinguishing_settings(). Runs are compared with runs and sweeps
-/// with sweeps, because configs of sweeps lack the default values. Moves the configs out of `records`, which then have
-/// none.
+/// with sweeps, because configs of sweeps lack the default values. Moves the configs out of `records`, so they are
+/// empty afterwards.
 void add_differences(std::vector<ListedRecord>& records);
 
-/// Returns the rows of the records that satisfy `where`. In a record that lacks a name which other records have, the
-/// name is null. Throws Error for a name that no record has.
+/// Returns the rows of the records that satisfy `where`. A field that only other records have is null. Throws Error for
+/// a field that no record has.
 std::vector<Row> rows_where(const std::vector<ListedRecord>& records, const Condition& where);
 
 /// Returns a line of titles and one line per row. Returns "" if there are no rows.

@@ -36,7 +36,7 @@ double rank(std::vector<Difference>& sorted) {
 }
 
 /// Returns the probability that a rank sum is at most `doubled_sum` / 2 if every sign is random. The distribution is
-/// computed rank by rank.
+/// built by adding one rank at a time.
 double share_at_most(const std::vector<Difference>& ranked, std::size_t doubled_sum) {
   std::vector<double> share(doubled_sum + 1, 0.0);
   share[0] = 1.0;
@@ -76,7 +76,7 @@ SignedRank signed_rank_test(const std::vector<double>& first, const std::vector<
   out.effect = (out.rank_sum_higher - out.rank_sum_lower) / sum;
   out.exact = ranked.size() <= kExactSignedRanks;
   if (out.exact) {
-    // The two tails of the symmetric distribution are equal. If the sum is in the middle, they overlap.
+    // The two tails of the symmetric distribution are equal. Near the middle they overlap, so p is limited to 1.
     out.p = std::min(1.0, 2.0 * share_at_most(ranked, std::min(higher, lower)));
     return out;
   }

@@ -23,7 +23,8 @@ std::size_t count_of(const Clusters& clusters) {
 /// Returns the mean of all values.
 double mean_of_clusters(const Clusters& clusters) {
   const std::vector<double> means = cluster_means(clusters);
-  // Clusters of one size and equal means avoid the rounding errors of the general formula.
+  // If all clusters have the same size or the same mean, the mean of the means avoids the rounding errors of the
+  // general formula.
   const auto same_size = [&](const std::vector<double>& one) { return one.size() == clusters.front().size(); };
   const auto equal = [&](double one) { return one == means.front(); };
   if (std::all_of(clusters.begin(), clusters.end(), same_size) || std::all_of(means.begin(), means.end(), equal))

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Means of clustered samples with Student's t interval.
+// Means of clustered samples with Student's t intervals.
 #pragma once
 
 #include "record/quantiles.hpp"
@@ -25,7 +25,7 @@ using Clusters = std::vector<std::vector<double>>;
 std::vector<double> cluster_means(const Clusters& clusters);
 
 /// Relative tolerance of equality. Values that differ by less than this share of the largest value count as equal, so
-/// that rounding affects neither ranks nor intervals.
+/// rounding affects neither ranks nor intervals.
 inline constexpr double kRounding = 1e-12;
 
 /// The mean of a sample with a two-sided 95 % interval of the true mean.
@@ -37,8 +37,8 @@ struct MeanEstimate {
 };
 
 /// Returns the influence of each cluster on the mean of all values: (mean of the cluster - `mean`) times the size of
-/// the cluster over the average size. The influences sum to 0. Repeating every value of all clusters does not change
-/// them.
+/// the cluster, divided by the average size. The influences sum to 0. They do not change if every value of all clusters
+/// is repeated.
 std::vector<double> cluster_influences(const Clusters& clusters, double mean);
 
 /// Returns whether the means of all clusters are equal within kRounding. A sample with equal means has no interval,
@@ -51,8 +51,8 @@ bool all_equal(const Clusters& clusters, double scale = 0.0);
 /// Sampling techniques, section 9A.1). One cluster, or clusters that are all_equal(), have no interval.
 MeanEstimate estimate_mean(const Clusters& clusters, double scale = 0.0);
 
-/// Returns the number by which the standard error is multiplied for the interval of estimate_mean(): 12.706 for one
-/// degree of freedom, 1.960 in the limit. `degrees` must be at least 1.
+/// Returns the ratio of half the interval of estimate_mean() to the standard error: 12.706 for one degree of freedom,
+/// 1.960 in the limit. `degrees` must be at least 1.
 double student_factor(std::size_t degrees);
 
 /// Returns the quantile of the standard normal distribution for a probability between 0 and 1.

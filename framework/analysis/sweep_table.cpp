@@ -44,7 +44,7 @@ std::string spread(const std::vector<double>& values, const Scale& scale) {
 
 SweepTableRow row_of(const JobGroup& group, const std::string& error, const InitialTaps& initial_taps) {
   SweepTableRow out;
-  // Largest number of jobs whose configs are tried; more than one, because a config may be damaged.
+  // Largest number of jobs whose configs are read. It exceeds one because a config may be damaged.
   constexpr std::size_t kMostAsked = 3;
   std::optional<int> initial;  // number of initial taps, equal for all jobs of a group
   for (std::size_t i = 0; i < std::min(kMostAsked, group.jobs.size()) && !initial; ++i) {

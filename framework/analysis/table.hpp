@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The table model of all outputs: text for terminals, Markdown, LaTeX, rows for CSV and JSON, and cells for pages.
+// The table class of all outputs: text for terminals, Markdown, LaTeX, rows for CSV and JSON, and cells for pages.
 #pragma once
 
 #include "record/row.hpp"
@@ -30,8 +30,8 @@ class Table {
   void add_row() { rows_.emplace_back(), next_ = 0; }
   /// Adds a displayed cell to the last row.
   void show(const std::string& title, std::string cell, Kind kind = Kind::number);
-  /// Adds a field for programs to the last row. The value is a scalar, or an optional scalar that becomes null if it is
-  /// empty.
+  /// Adds a field for programs to the last row. The value is a scalar or an optional scalar. An empty optional is
+  /// stored as null.
   template <class Value>
   void store(std::string name, Value value) {
     rows_.back().add(std::move(name), std::move(value));

@@ -30,8 +30,8 @@ std::string bytes_of(const std::string& file) {
   throw Error(file, words_of(reading, kMostViewBytes).reason);
 }
 
-// Height of a square above the desk, in its standard deviations: at least kObjectSigmas on an object, at most
-// kDeskSigmas on the desk. A height in between may be a low object or noise.
+// Limits of a square's height above the desk, in standard deviations of this height. Above kObjectSigmas, the square is
+// on an object; up to kDeskSigmas, it is on the desk. A height in between may be a low object or noise.
 constexpr double kObjectSigmas = 2.5;
 constexpr double kDeskSigmas = 1.0;
 
@@ -56,8 +56,8 @@ struct Offset {
   double variance = 0.0;
 };
 
-/// Computes the offset from the heights of squares of the desk, with the standard deviations `noise` of a height and
-/// `bias` of the offset.
+/// Computes the offset from the heights of squares on the desk. `noise`: standard deviation of a height; `bias`: prior
+/// standard deviation of the offset, metres.
 Offset offset_of(const std::vector<double>& desk_heights, double noise, double bias) {
   if (bias == 0.0) return {};
   if (noise == 0.0 && !desk_heights.empty()) return {desk_heights.front(), 0.0};
@@ -106,7 +106,7 @@ void PriorOptions::list(Fields& fields) {
           "pose of the point cloud in the frame of the area; not given: the point cloud is in the frame of the area"));
   const auto trouble = catch_error([&] { checksum = depth.empty() ? "" : hash_of(bytes_of(depth)); });
   fields.text(checksum, Field("checksum", "checksum of the file content; not given: computed from the file"));
-  // A record has the checksum, so it needs no file. The error already has the file as its place.
+  // A record has the checksum, so the file is not needed. The text of the error already contains the file name.
   fields.require(!trouble || !checksum.empty(), "depth", trouble ? trouble->what() : "");
 }
 

@@ -7,7 +7,7 @@
 namespace palpate {
 namespace {
 
-/// Trust comes in steps, so that few taps rebuild a GP.
+/// Trust is rounded to steps, because each change of the trust rebuilds a GP.
 constexpr double kTrustSteps = 10.0;
 constexpr double kLeastTrust = 1e-3;
 

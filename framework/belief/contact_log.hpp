@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The contacts of all taps as they are read now, and the data that models learn from them.
+// The contacts of all taps with their current readings, and the data from which the models learn.
 #pragma once
 
 #include "belief/camera_view.hpp"
@@ -16,43 +16,43 @@
 
 namespace palpate {
 
-/// Taps, and the data that models learn from: first the points of the prior view, then the contacts. A row is the index
-/// of a datum. Heights are metres above the desk.
+/// Taps, and the data from which the models learn: first the points of the prior view, then the contacts. A row is the
+/// index of a datum. Heights are metres above the desk.
 class ContactLog {
  public:
   /// `scene` must outlive the log. Throws Error for a prior view that cannot be read.
   ContactLog(const HeightMapOptions& options, const Scene& scene);
 
-  /// Returns how contacts are read now.
+  /// Returns the reader of contacts in its current state.
   const ContactReader& reader() const { return reader_; }
 
-  /// Adds a tap, and reads all contacts again if offsets are estimated. `noise`: standard deviation of a height by the
-  /// most precise motion, metres.
+  /// Adds a tap, and reads all contacts again if offsets are estimated. `noise`: standard deviation of a height that is
+  /// measured with the most precise motion, metres.
   void add(const TapRequest& request, const TapResult& result, double noise);
 
-  /// Returns whether the label of a contact before the latest has changed since the last call.
+  /// Returns whether the label of a contact has changed since the last call. The latest contact does not count.
   bool take_label_changes() { return std::exchange(changed_, false); }
 
   int taps() const { return taps_; }
 
-  // The contacts, in their order, and the number of the tap of each.
+  // The contacts, the contacts with objects, and the tap number of each contact, in the order of the taps.
   const std::vector<Touch>& contacts() const { return contacts_; }
   const std::vector<Touch>& object_contacts() const { return object_contacts_; }
   const std::vector<int>& tap_numbers() const { return tap_numbers_; }
 
-  // The data.
+  // The data: points of the prior view and contacts.
   int size() const { return prior_size() + static_cast<int>(contacts_.size()); }
   int prior_size() const { return static_cast<int>(prior_.size()); }
   const std::vector<ViewedSquare>& prior() const { return prior_; }
   const Touch& datum(int row) const;
-  /// Rows of the data on an object, ascending, and the number of those in the prior view.
+  /// Rows of the data on objects in ascending order, and how many of these rows are from the prior view.
   const std::vector<int>& object_rows() const { return object_rows_; }
   int prior_objects() const { return prior_objects_; }
-  /// Returns for each datum how far its height is trusted, in (0, 1]: `noise`^2 over the variance of its own noise, and
-  /// of a contact times 1 - `outlier_probability` (of each contact). Both factors come in tenths, and a contact has
-  /// 0.001 at least.
+  /// Returns the trust in the height of each datum, in (0, 1]. The trust is `noise`^2 divided by the noise variance of
+  /// the datum. For a contact, it is also multiplied by 1 - `outlier_probability` (one value per contact). Both factors
+  /// of a contact are rounded to tenths, and the product is at least 0.001.
   Eigen::VectorXd trust(const Eigen::VectorXd& outlier_probability, double noise) const;
-  /// Whether any datum has another noise than the others.
+  /// Returns whether the data differ in their noise.
   bool has_uneven_noise() const { return uneven_; }
 
  private:
@@ -66,9 +66,10 @@ class ContactLog {
   std::vector<int> object_rows_;
   bool changed_ = false;
   bool uneven_ = false;
-  // Of each contact.
+  // One value per contact.
   std::vector<int> tap_numbers_;
-  std::vector<double> shares_;  ///< variance of the most precise motion over that of its own
+  /// Variance of a height by the most precise motion, divided by the variance by the contact's own motion.
+  std::vector<double> shares_;
 };
 
 }  // namespace palpate

@@ -13,8 +13,8 @@ std::optional<TapReading> ContactReader::read(const TapRequest& request, const T
   out.on_object = scene_.on_object(result.height());
   if (!offset_) return out;
   out.is_corrected = true;
-  // While the offset is uncertain, a contact that is hardly higher than the desk is more probably the desk than so low
-  // an object.
+  // While the offset is uncertain, a contact slightly above the desk is more probably a contact with the desk than with
+  // a very low object.
   const OffsetModel::Estimate estimate = offset_->at(seconds_, request.motion);
   const double height = out.position.z() -= estimate.value;
   const double unsure =
@@ -32,7 +32,7 @@ bool ContactReader::add(const TapRequest& request, const TapResult& result, std:
   if (!offset_) return false;
   measured_.push_back({result.height() - scene_.desk(), began, request.motion});
   offset_->add(request.line.target(), began, measured_.back().height, request.motion);
-  // Offsets come in steps far below the noise, so that few taps rebuild a GP.
+  // Offsets are rounded to steps far below the noise, because each change of the heights rebuilds a GP.
   constexpr double kStep = 2.5e-4;
   const double noise = offset_->noise();
   bool has_changed = false;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// How contacts are read: their height without the offset of arm and motion, and whether they are on an object. Later
-// contacts may change how earlier ones are read.
+// Reads contacts: subtracts the estimated offset of arm and motion from the measured height, and decides whether the
+// contact is on an object. Later contacts may change the readings of earlier contacts.
 #pragma once
 
 #include "belief/height_map_options.hpp"
@@ -18,25 +18,26 @@ namespace palpate {
 
 class ContactReader {
  public:
-  /// `offset`: nullopt if no offset is estimated. `scene` must outlive it.
+  /// `offset`: nullopt if no offset is estimated. `scene` must outlive the reader.
   ContactReader(const std::optional<OffsetOptions>& offset, const Scene& scene) : scene_(scene) {
     if (offset) offset_.emplace(OffsetPrior{offset->offset, offset->drift, offset->noise});
   }
 
-  /// Returns the contact of the next tap, as it would be read; nullopt without a contact. Changes nothing.
+  /// Returns the reading of `result` as the result of the next tap; nullopt without a contact. Changes nothing.
   std::optional<TapReading> read(const TapRequest& request, const TapResult& result) const;
 
-  /// Takes the result of a tap, adds its contact to `contacts`, those so far, and reads all of them again. Returns
+  /// Adds the contact of a tap to `contacts`, the contacts so far, and updates the readings of all contacts. Returns
   /// whether the label of an earlier contact has changed.
   bool add(const TapRequest& request, const TapResult& result, std::vector<Touch>& contacts);
 
-  /// Whether the config estimates the offset of arm and motions (`belief.height.offset`).
+  /// Returns whether the config estimates the offset of arm and motions (`belief.height.offset`).
   bool has_offset() const { return offset_.has_value(); }
-  /// Returns the variance of that estimate now, which all heights share, square metres; 0 without.
+  /// Returns the current variance of the estimated offset, square metres; 0 without an estimate. The error of the
+  /// offset is the same for all heights.
   double offset_variance() const { return offset_ ? offset_->at(seconds_).variance : 0.0; }
 
  private:
-  /// A contact as measured.
+  /// A contact with its measured height, before any correction.
   struct Measured {
     double height;  ///< above the desk, metres
     double begin;   ///< robot time before the tap, seconds
@@ -46,7 +47,7 @@ class ContactReader {
   const Scene& scene_;
   double seconds_ = 0.0;  ///< robot time of all taps
   std::optional<OffsetModel> offset_;
-  std::vector<Measured> measured_;  ///< if offsets are estimated
+  std::vector<Measured> measured_;  ///< only if offsets are estimated
 };
 
 }  // namespace palpate

@@ -1,18 +1,20 @@
 // SPDX-License-Identifier: MIT
-// Expected RMSE of the reconstruction under the belief, without the truth: for `stop.expected_rmse`.
+// Expected RMSE of the reconstruction under the belief, without the truth. The stop rule `expected_rmse` uses it.
 //
 // A cell is on an object with probability p. On an object, its height above the desk has mean m and variance v;
 // otherwise the height is 0. The expected squared error is
 //     p v + (1 - p) m^2    if it is reconstructed at m (p >= 1/2): an error of the height, or of the outline,
-//     p (v + m^2)          if it is reconstructed as desk,
-// and v with `surface: single`, which has one GP for object and desk. The expected RMSE is the root of the mean of
-// these squared errors over the candidates. By Jensen's inequality it is at least the mean RMSE.
+//     p (v + m^2)          if it is reconstructed as desk.
+// With `surface: single`, which has one GP for object and desk, the expected squared error is v. The expected RMSE is
+// the root of the mean of these squared errors over the candidates. By Jensen's inequality it is at least the mean
+// RMSE.
 //
-// v scales with `belief.height.signal`, which most configs set by convention and not from the object. Let K be the
-// covariance of n heights r, in signals and without their constant level. Then r^T K^-1 r / (n - 1) is the most likely
-// ratio of the true variance to the configured one (Rasmussen and Williams 2006, section 5.4.1). Few taps determine it
-// poorly, and a single one not at all. So the prior, with the weight of one tap, is that the heights of an object vary
-// by as much as the height itself. With h^2, the mean squared height of the object taps in signals, v is multiplied by
+// v scales with `belief.height.signal`, which most configs set by convention and not from the object. Let r be n
+// measured heights, divided by the signal and without their constant level, and let K be their covariance. Then r^T
+// K^-1 r / (n - 1) is the most likely ratio of the true variance to the configured variance (Rasmussen and Williams
+// 2006, section 5.4.1). A few taps determine this ratio poorly, and a single tap not at all. So there is a prior with
+// the weight of one tap: the heights of an object vary by as much as the height itself. Let h^2 be the mean squared
+// height of the object taps, divided by the squared signal. Then v is multiplied by
 //     (h^2 + r^T K^-1 r) / n,
 // or with n + 1 instead of n if no level is removed.
 #pragma once
@@ -30,17 +32,17 @@
 namespace palpate {
 
 /// Returns the mean over all cells of the expected squared error, square metres. A cell is on an object with
-/// `probability`, and its height above the desk is then distributed with `mean` and `variance`.
+/// `probability`. Its height above the desk then has `mean` and `variance`.
 double expected_square(const Eigen::VectorXd& probability, const Eigen::VectorXd& mean,
                        const Eigen::VectorXd& variance);
 
-/// Returns the factor by which the variances of `heights` must be multiplied to fit its taps. `square`: mean squared
-/// height of the object taps above the desk, square metres.
+/// Returns the factor by which the variances of the GP `heights` must be multiplied to agree with the heights of its
+/// taps. `square`: mean squared height of the object taps above the desk, square metres.
 double variance_ratio(const GaussianProcess& heights, double square);
 
 /// Returns the expected RMSE over the candidates, metres; nullopt before the first object contact, or if it is not
-/// finite. `variance`: of maps.height, square metres; `heights`: the GP of both maps, null before it is built;
-/// `object_contacts`: all data of that GP on objects.
+/// finite. `variance`: variance of maps.height, square metres; `heights`: the GP that computed both maps, null before
+/// it is built; `object_contacts`: all contacts with objects.
 std::optional<double> expected_rmse(const SurfaceMaps& maps, const Eigen::VectorXd& variance,
                                     const GaussianProcess* heights, const std::vector<Touch>& object_contacts);
 

@@ -26,7 +26,8 @@ void FootprintModel::update(const ContactLog& log) {
     require_finite(probability_, "the probability p", log.taps());
     if (shows_hypotheses_) footprint_->sample(candidates_.points, hypotheses_);
   }
-  // In steps far below the shortest push that taps can show, so that few taps rebuild a GP.
+  // Displacements are rounded to steps far below the shortest push that taps can reveal, because each change of a
+  // position rebuilds a GP.
   constexpr double kStep = 1e-3;
   positions_.resize(log.size(), 2);
   for (int i = 0; i < log.size(); ++i) {

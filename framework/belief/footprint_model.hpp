@@ -19,11 +19,11 @@ class FootprintModel {
   /// `candidates` and `context` must outlive the model.
   FootprintModel(const PluginChoice& choice, const CandidateGrid& candidates, const Context& context);
 
-  /// Returns whether the footprint is the clipped label GP; then no function below is called.
+  /// Returns whether the footprint is the clipped label GP. If so, the functions below must not be called.
   bool is_label_gp() const { return footprint_->is_weight(); }
 
-  /// Keeps the probability, and optionally hypotheses, from the next update() on. Returns whether the probability or
-  /// the hypotheses were not kept before.
+  /// Requests the probability, and with `hypotheses` also the hypotheses, from the next update() on. Returns whether
+  /// this is the first request for the probability or for the hypotheses.
   bool show(bool hypotheses);
   const std::string& name() const { return choice_.type; }
   bool is_shown() const { return shown_; }
@@ -35,7 +35,7 @@ class FootprintModel {
   /// Removes all data, because labels have changed.
   void reset();
 
-  /// Returns M values; empty before the first update().
+  /// Returns the probability at each candidate, M values; empty before the first update().
   const Eigen::VectorXd& probability() const { return probability_; }
   const HypothesisSample& hypotheses() const { return hypotheses_; }
 

@@ -18,12 +18,12 @@ namespace palpate {
 
 /// A GP as the config describes it.
 struct GpDescription {
-  const char* stream;  ///< names the random numbers of its fits
+  const char* stream;  ///< name of the random stream of its fits
   PluginChoice kernel, fitting;
   std::vector<GpSettings> outputs;
   EngineSettings engine;
-  bool labels = false;        ///< output 0 has the labels, not the heights
-  bool only_objects = false;  ///< it learns from data on an object
+  bool labels = false;        ///< whether output 0 is the labels instead of the heights
+  bool only_objects = false;  ///< whether the GP learns only from data on objects
 };
 
 class GpModel {
@@ -32,38 +32,39 @@ class GpModel {
   /// cannot work with the kernel.
   GpModel(GpDescription description, const CandidateGrid& candidates, const Context& context);
 
-  /// Adds a second output, the labels. Only before show().
+  /// Adds a second output, the labels. Must be called before show().
   void add_labels(const GpSettings& settings) { description_.outputs.push_back(settings); }
 
-  /// Whether a fit is due after any of the first `taps` contacts.
+  /// Returns whether a fit is due after any of the first `taps` contacts.
   bool is_fitted_within(int taps) const;
 
   const EngineSettings& engine() const { return description_.engine; }
 
-  /// Builds the posterior, with the maps of an output from 0. Returns whether anything was missing.
+  /// Builds the posterior and the maps of the outputs 0 to `output`, unless they exist. Returns whether something was
+  /// built.
   bool show(int output);
   bool is_built() const { return process_ != nullptr; }
   bool shows(int output) const { return process_ && process_->shown() > output; }
   const GaussianProcess& process() const { return *process_; }
-  /// The fit after the latest contact; null if none was due then.
+  /// Returns the fit after the latest contact; null if no fit was due after this contact.
   const FitSummary* last_fit() const { return fit_at_ > 0 && fit_at_ == process_->size() ? &fit_ : nullptr; }
   int failed_fits() const { return failed_fits_; }
-  /// Standard deviation of the noise of output 0, now.
+  /// Returns the current standard deviation of the noise of output 0.
   double noise() const { return process_ ? process_->settings().noise : description_.outputs.front().noise; }
 
-  // Updates; each does nothing before show(), and notes whether maps have become stale.
-  /// Takes in the data since, one by one, each with its fit: so a model that is built late has the states of one that
-  /// was there from the first tap.
+  // Updates. Each function does nothing before show(), and marks the maps as stale if the posterior changes.
+  /// Adds the data of the log that are missing in the GP, one by one, each followed by the fit that is due. So a model
+  /// that is built late passes through the same states as a model that was built before the first tap.
   void add_data(const ContactLog& log, PhaseClock* clock);
-  /// Sets the heights of all data as they are read now.
+  /// Sets the heights of all data to their current readings.
   void set_heights(const ContactLog& log);
-  /// Sets the positions of all data, and how far each is trusted; a row or number for each datum of the log.
+  /// Set the positions of all data, or the trust in them. The argument has one row, or one value, per datum of the log.
   void set_positions(const ContactLog& log, const Points& positions);
   void set_trust(const ContactLog& log, const Eigen::VectorXd& trust);
-  /// Forgets all data, as labels have changed.
+  /// Removes all data, because labels have changed.
   void reset();
 
-  /// Whether the maps are older than the posterior.
+  /// Returns whether the maps are older than the posterior.
   bool is_stale() const { return stale_; }
   void set_stale(bool stale) { stale_ = stale; }
   void update_maps() { process_->update_maps(); }
@@ -76,7 +77,7 @@ class GpModel {
   int prior_size(const ContactLog& log) const {
     return description_.only_objects ? log.prior_objects() : log.prior_size();
   }
-  /// The row in the log of a datum of this model.
+  /// Returns the row in the log of a datum of this model.
   int row(const ContactLog& log, int datum) const {
     return description_.only_objects ? log.object_rows()[static_cast<std::size_t>(datum)] : datum;
   }

@@ -19,7 +19,8 @@
 namespace palpate {
 namespace {
 
-/// Adds the fields of a GP, their names beginning with `name`: null before it is built, kernel and fit left out.
+/// Adds the fields of a GP, whose names begin with `name`. Before the GP is built, the fields are null, and the fields
+/// of kernel and fit are left out.
 void add_gp(BeliefState& out, const std::string& name, const HeightModels::Output& gp, bool summary) {
   const auto add = [&](const char* field, auto value) {
     out.add(name + "." + field, gp ? std::optional(value) : std::nullopt);
@@ -54,7 +55,7 @@ void add_footprint(BeliefState& out, const Footprint& footprint) {
   out.add("footprint.remark", remark.empty() ? std::nullopt : std::optional(remark));
 }
 
-/// Returns what a footprint reports of its factorisations, by the names of its numbers.
+/// Returns the diagnostics of factorisations among the numbers that a footprint reports.
 FactorReport factors_of(const Footprint& footprint) {
   FactorReport out;
   for (const FootprintNumber& one : footprint.numbers()) {
@@ -66,7 +67,7 @@ FactorReport factors_of(const Footprint& footprint) {
   return out;
 }
 
-/// Probabilities with two decimals; nullopt for an empty list.
+/// Returns the suspected outliers as a list; nullopt if there are none. Probabilities are rounded to two decimals.
 std::optional<JsonList> outliers_among(const std::vector<TapReading>& readings) {
   std::vector<std::string> rows;
   for (const TapReading& one : readings) {
@@ -119,7 +120,7 @@ std::vector<PlannedModel> HeightMap::plan(const ReadPlan& plan) {
     plan_.readers.push_back({"surface", {quantity::kHeightMean, quantity::kObjectProbability}, *plan.surface_from});
   std::vector<PlannedModel> out;
   for (const ReadPlan::Reader& reader : plan_.readers) {
-    if (reader.from == Stage::summary) continue;  // chooses no tap
+    if (reader.from == Stage::summary) continue;  // these readers do not influence taps
     for (const std::string& model : models_.names_of(models_.models_of(reader.reads, reader.at_one_candidate))) {
       const bool is_known = std::any_of(out.begin(), out.end(), [&](const PlannedModel& one) {
         return one.model == model && one.reader == reader.name;

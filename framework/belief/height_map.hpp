@@ -17,7 +17,7 @@ namespace palpate {
 class HeightMap final : public Belief {
  public:
   using Options = HeightMapOptions;
-  /// `context` must outlive it. Throws Error for options that a plugin rejects.
+  /// `context` must outlive the belief. Throws Error for options that a plugin rejects.
   HeightMap(const HeightMapOptions& options, const Context& context);
 
   std::vector<Quantity> offers() const override;
@@ -48,7 +48,7 @@ class HeightMap final : public Belief {
   const HeightModels& models() const { return models_; }
 
  private:
-  /// Returns the arrays of the surface that `models` have.
+  /// Returns the arrays of the surface that `models` compute; null for the other arrays.
   SurfaceMaps maps(const ModelSet& models) const;
   SurfaceMaps maps() const { return maps(begun_); }
   std::optional<double> expected_rmse_of(const SurfaceMaps& maps) const;
@@ -63,11 +63,11 @@ class HeightMap final : public Belief {
   CandidateGrid grid_;
   HeightModels models_;
   ReadPlan plan_;
-  ModelSet begun_;  ///< the models of begun stages, which the record has
+  ModelSet begun_;  ///< models that the readers of begun stages need; their states are recorded
   TapsSoFar taps_;
   mutable Eigen::VectorXd height_std_, measurement_std_;  ///< computed when they are read
-  const Scene* scene_ = nullptr;                          ///< the truth
-  std::optional<Truth> truth_;                            ///< the same at the candidates
+  const Scene* scene_ = nullptr;                          ///< the true scene; null if it is not known
+  std::optional<Truth> truth_;                            ///< the true scene at the candidates
 };
 
 }  // namespace palpate

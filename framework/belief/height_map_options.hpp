@@ -44,7 +44,7 @@ struct LabelOptions : ProcessOptions {
   void list(Fields& fields) override;
 };
 
-/// Computation of the posterior over the candidates.
+/// Options of the engine, which computes the posterior at the candidates.
 struct EngineOptions : Options {
   enum class Type { automatic, dense, grid, lowrank };
   Type type = Type::automatic;

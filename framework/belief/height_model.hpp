@@ -13,16 +13,19 @@ namespace palpate {
 /// Maps have M values, and are empty before the first update.
 class HeightModel {
  public:
-  /// `has_mean`: whether the mean is the surface (`surface: single`). `desk`: its height, metres.
+  /// `has_mean`: whether mean() is computed, because it is the surface (`surface: single`). `desk`: height of the desk,
+  /// metres.
   HeightModel(GpModel gp, bool has_mean, double desk) : gp_(std::move(gp)), has_mean_(has_mean), desk_(desk) {}
 
   GpModel& gp() { return gp_; }
   const GpModel& gp() const { return gp_; }
 
-  /// Updates the maps to the data of the GP, after `taps` taps. Throws Error for values that are not finite.
+  /// Updates the maps to the data of the GP. Throws Error for values that are not finite; the message contains `taps`,
+  /// the number of taps so far.
   void update_maps(int taps);
 
-  /// Returns the variance relative to the prior, without noise, in [0, 1], and the variance itself, square metres.
+  /// Return the variance without noise: uncertainty() relative to the prior, in [0, 1], and variance() in square
+  /// metres.
   const Eigen::VectorXd& uncertainty() const { return uncertainty_; }
   const Eigen::VectorXd& variance() const { return variance_; }
   /// Returns the mean, metres, in the frame of the scene.
@@ -41,14 +44,15 @@ class LabelMap {
   /// `clip`: whether weight() is clipped.
   explicit LabelMap(bool clip) : clip_(clip) {}
 
-  /// Reads the map of an output, after `taps` taps. Throws Error for values that are not finite.
+  /// Reads the map of an output of `process`. Throws Error for values that are not finite; the message contains `taps`,
+  /// the number of taps so far.
   void update(const GaussianProcess& process, int output, int taps);
 
   /// Returns the mean of the labels.
   const Eigen::VectorXd& mean() const { return mean_; }
   /// Returns the mean clipped to [0, 1]: the probability of `footprint: gp_regression`.
   const Eigen::VectorXd& clipped() const { return clipped_; }
-  /// Returns the weight of the paper's acquisition: the clipped mean with `clip`, else the mean.
+  /// Returns the weight w of the acquisition of Sun and Min 2021: the clipped mean if `clip` is set, else the mean.
   const Eigen::VectorXd& weight() const { return clip_ ? clipped_ : mean_; }
 
  private:

@@ -10,10 +10,10 @@
 
 namespace palpate {
 
-// The level of an object is not known before it is touched: a thousand signals make it as good as free, unless the
-// surface varies by less than a thousandth of its height.
+// Standard deviation of the unknown constant level of object heights, in signals. A thousand signals leave the level
+// practically free, unless the surface varies by less than a thousandth of its height.
 constexpr double kFreeLevel = 1000.0;
-// With outliers the level has a size: a level that may have any value makes an outlier of the first tap.
+// The same with an outlier model. If the level were free, the first object tap would count as an outlier.
 constexpr double kLevelWithOutliers = 1.0;
 
 namespace {
@@ -60,7 +60,7 @@ HeightModels::HeightModels(const HeightMapOptions& options, const CandidateGrid&
     const PluginChoice kernel = label.kernel.value_or(context.run.kernel);
     const PluginChoice fitting = label.fitting.value_or(context.run.fitting);
     labels_.emplace(GpDescription{"fitting/weight", kernel, fitting, {settings}, engine, true}, candidates, context);
-    // Models that are equal and stay so are two outputs of one process.
+    // If both GPs have the same covariance, and no fit changes it, they become two outputs of one GP.
     const auto taps = static_cast<int>(context.run.taps);
     if (same(height.kernel.value_or(context.run.kernel), kernel) &&
         height.noise / height.signal == label.noise / label.signal && !heights_.gp().is_fitted_within(taps) &&
@@ -68,7 +68,8 @@ HeightModels::HeightModels(const HeightMapOptions& options, const CandidateGrid&
       labels_.reset();
   }
   if (is_joined()) {
-    // By the ratio of noise to signal, the labels' noise is that of the heights.
+    // Both outputs have the same ratio of noise to signal, so the noise of the labels follows from the noise of the
+    // heights.
     settings.noise = height.noise / height.signal * settings.signal;
     heights_.gp().add_labels(settings);
   }
@@ -118,7 +119,7 @@ ModelSet HeightModels::models_of(const QuantitySet& quantities, bool at_one_cand
   out.hypotheses = footprint_ && has(kHypotheses);
   out.labels = has(kLabelMean) || (probability && !footprint_);
   if (surface_) {
-    // The surface without outliers needs no map for the height at one candidate.
+    // With an outlier model, the height at one candidate can be computed without a map.
     out.surface_map = height && !(at_one_candidate && surface_->has_outliers());
     out.surface = height || has(kOutliers);
   }
@@ -161,10 +162,10 @@ void HeightModels::for_each_gp(const Visit& visit) {
   if (surface_) visit(surface_->gp());
 }
 
-/// Has all models take in the contacts since, as they are read now.
+/// Adds the new contacts to all models, and updates earlier contacts whose readings have changed.
 void HeightModels::add_data() {
   if (log_.take_label_changes()) {
-    // A GP of heights alone stays: only their values change.
+    // A GP of heights alone is not reset, because set_heights() below updates its values.
     if (is_joined()) heights_.gp().reset();
     if (labels_) labels_->reset();
     if (surface_) surface_->reset();
@@ -180,7 +181,7 @@ void HeightModels::add_data() {
   for_each_gp([&](GpModel& gp) { gp.set_positions(log_, footprint_->positions()); });
 }
 
-/// Has the models of heights trust each contact as far as it is no outlier.
+/// Updates the outlier probabilities, and sets the trust of the models of heights in each contact accordingly.
 void HeightModels::find_outliers() {
   Eigen::VectorXd probabilities;
   if (outliers() != nullptr) {

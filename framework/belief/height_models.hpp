@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The models of the belief `height_map`: the height GP and the label GP over the candidates, the footprint, and with
-// `surface: two_part` the GP of the heights on objects. A GP of heights and labels with equal kernel and equal ratio of
-// noise to signal has two outputs and one factorisation.
+// `surface: two_part` the GP of the heights on objects. If height GP and label GP have the same kernel and the same
+// ratio of noise to signal, they are one GP with two outputs and one factorisation.
 #pragma once
 
 #include "belief/contact_log.hpp"
@@ -23,12 +23,12 @@
 
 namespace palpate {
 
-/// Models, by the arrays that they have.
+/// A set of models. Comments name the quantities that a model offers as arrays.
 struct ModelSet {
   bool heights = false;      ///< the height GP: uncertainty, measurement_std
   bool labels = false;       ///< the label GP: label_mean
-  bool surface = false;      ///< the surface GP of `two_part`, for heights at one candidate
-  bool surface_map = false;  ///< and for its arrays
+  bool surface = false;      ///< the surface GP of `two_part`, without arrays: heights at one candidate
+  bool surface_map = false;  ///< the surface GP with its arrays: height_mean, height_std
   bool footprint = false;    ///< a footprint that is not the label GP
   bool hypotheses = false;
 };
@@ -36,40 +36,42 @@ struct ModelSet {
 class HeightModels {
  public:
   /// Creates all plugins, so that options which they reject are rejected before the first tap. `candidates` and
-  /// `context` must outlive it.
+  /// `context` must outlive the models.
   HeightModels(const HeightMapOptions& options, const CandidateGrid& candidates, const Context& context);
 
   const ContactLog& log() const { return log_; }
 
-  /// Returns the models that some quantities need; `at_one_candidate`: by predict() alone. kOutliers is among them.
+  /// Returns the models that `quantities` need; one of these may be kOutliers. `at_one_candidate`: whether the
+  /// quantities are only read by predict().
   ModelSet models_of(const QuantitySet& quantities, bool at_one_candidate = false) const;
-  /// The outlier probabilities of contacts, which need the surface GP without its arrays.
+  /// Internal quantity: the outlier probabilities of contacts. They need the surface GP, but not its arrays.
   static constexpr const char* kOutliers = "outlier_probability";
-  /// Returns their names: "height GP", "footprint primitives".
+  /// Returns the names of models, such as "height GP" or "footprint primitives".
   std::vector<std::string> names_of(const ModelSet& models) const;
 
-  /// Takes the result of a tap. Only contacts reach the models.
+  /// Adds the result of a tap to the log. Only contacts change the models.
   void add(const TapRequest& request, const TapResult& result);
 
-  /// Builds models that are missing, from the next update() on with all taps so far: they pass through the very states
-  /// that they would have had, had they been built before the first tap.
+  /// Builds the models that do not exist yet. The next update() adds all taps so far one by one, so the new models pass
+  /// through the same states as models that were built before the first tap.
   void build(const ModelSet& models);
 
-  /// Has the built models take in the taps since, one by one, fits included; then the footprint, then the outliers.
+  /// Adds the taps since the last update to the built models, one by one, fits included. Then updates the footprint,
+  /// and then the outlier probabilities.
   void update();
-  /// Brings the arrays of the built models up to date, after update(). Throws Error for values that are not finite.
+  /// Updates the arrays of the built models; requires update(). Throws Error for values that are not finite.
   void infer();
 
-  /// Whether the arrays are those of the last tap.
+  /// Returns whether the arrays include the last tap.
   bool is_inferred() const { return is_updated_ && is_inferred_; }
 
-  // The arrays, M values each; empty before infer(), and without their model.
+  // The arrays, M values each. An array is empty before infer(), and if its model is not built.
   const HeightModel& heights() const { return heights_; }
   const LabelMap& label_map() const { return label_map_; }
   const Eigen::VectorXd& height_mean() const { return surface_ ? surface_->mean() : heights_.mean(); }
   const Eigen::VectorXd& height_variance() const { return surface_ ? surface_->variance() : heights_.variance(); }
   const Eigen::VectorXd& probability() const { return footprint_ ? footprint_->probability() : label_map_.clipped(); }
-  /// Returns height and, if `probability`, the object probability at a candidate, after infer().
+  /// Returns the height and, if `probability` is true, the object probability at a candidate. Requires infer().
   Prediction predict(Eigen::Index candidate, bool probability) const;
 
   /// One output of a GP.
@@ -79,21 +81,21 @@ class HeightModels {
     const FitSummary* last_fit = nullptr;  ///< the fit after the latest tap; null if none was due then
     explicit operator bool() const { return process != nullptr; }
   };
-  /// The GPs; null before they are built. The surface GP is the height GP with `surface: single`.
+  /// The GPs; null before they are built. With `surface: single`, `surface` is the height GP.
   struct Gps {
     Output height, label, surface;
   };
   Gps gps() const;
-  /// Nullopt with `surface: single`.
+  /// Returns nullopt with `surface: single`.
   const std::optional<SurfaceModel>& surface() const { return surface_; }
-  /// Null if the footprint is the label GP.
+  /// Returns null if the footprint is the label GP.
   const FootprintModel* footprint() const { return footprint_ ? &*footprint_ : nullptr; }
 
-  /// Sets `out` to the contacts as the log and the built models read them now.
+  /// Sets `out` to the current readings of all contacts by the log and the built models.
   void read_again(std::vector<TapReading>& out) const;
-  /// Number of fits that found nothing better and kept the old hyperparameters.
+  /// Returns the number of failed fits (FitSummary::failed), which kept the old hyperparameters.
   int failed_fits() const;
-  /// Standard deviation of the noise of a height, metres.
+  /// Returns the standard deviation of the noise of a height, metres.
   double height_noise() const { return surface_model().noise(); }
 
  private:
@@ -111,10 +113,10 @@ class HeightModels {
   const Context& context_;
   ContactLog log_;
   HeightModel heights_;
-  std::optional<GpModel> labels_;  ///< none: output 1 of heights_
+  std::optional<GpModel> labels_;  ///< nullopt: the labels are output 1 of heights_
   LabelMap label_map_;
-  std::optional<SurfaceModel> surface_;      ///< none: the surface is the mean of heights_
-  std::optional<FootprintModel> footprint_;  ///< none: the label GP, clipped
+  std::optional<SurfaceModel> surface_;      ///< nullopt: the surface is the mean of heights_
+  std::optional<FootprintModel> footprint_;  ///< nullopt: the footprint is the clipped label GP
   bool is_updated_ = true, is_inferred_ = true;
 };
 

@@ -22,8 +22,8 @@ struct Truth {
 
 Truth truth_at(const CandidateGrid& candidates, const Scene& scene);
 
-/// Returns the root mean square of (map - truth.height) over all cells, or over the cells on an object; nullopt without
-/// such cells.
+/// Returns the root mean square of (map - truth.height) over all cells or, with `only_on_object`, over the cells on an
+/// object; nullopt if there are none.
 std::optional<double> rmse(const Eigen::VectorXd& map, const Truth& truth, bool only_on_object);
 
 /// Returns the intersection over union of the cells with `probability` >= 1/2 and the cells on an object.
@@ -46,12 +46,12 @@ Errors errors_of(const SurfaceMaps& maps, const Truth& truth);
 
 /// Calibration of the height model, noise included, over the untapped cells on an object.
 struct Calibration {
-  /// Mean negative log predictive density, natural logarithm of 1/m; absent if the variance of a cell is 0.
+  /// Mean negative natural logarithm of the predictive density in 1/m; absent if the variance of a cell is 0.
   std::optional<double> nlpd;
   std::optional<double> coverage_95;  ///< share of cells within the central 95 % interval
 };
-/// Returns the calibration of heights. `variance`: of the heights, square metres; `noise`: standard deviation of a tap,
-/// metres; `tapped`: flags of the tapped candidates.
+/// Returns the calibration of heights. `variance`: variance of the heights, square metres; `noise`: standard deviation
+/// of the noise of a tap, metres; `tapped`: whether each candidate has been tapped.
 Calibration calibration(const Eigen::VectorXd& mean, const Eigen::VectorXd& variance, double noise, const Truth& truth,
                         const std::vector<bool>& tapped);
 

@@ -32,7 +32,7 @@ class Grid {
   int columns_, rows_;
 };
 
-/// Index of the component of each cell, from 0; -1 for cells without one.
+/// Index of the component of each cell, counted from 0; -1 for cells without a component.
 struct Components {
   std::vector<int> of;
   int count = 0;

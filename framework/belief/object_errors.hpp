@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
-// Errors of each of several objects over the candidate cells, compared with the true scene.
+// Errors of each object separately, over the candidate cells, compared with the true scene.
 //
-// A cell belongs to the highest object at its centre, if any. It is predicted if the footprint's probability is at
-// least 1/2. Predicted cells form components of cells that share a side. A component holds an object if it contains at
-// least a fifth of the object's cells.
+// A cell belongs to the highest object at its centre, if any. A cell is predicted if the footprint's probability there
+// is at least 1/2. Predicted cells form components of cells that share a side. A component holds an object if it
+// contains at least a fifth of the object's cells.
 //
-// Two objects are merged if one component holds both although their own cells do not touch, not even at a corner, so
-// that a gap is visible. An object is split if several components hold it although its own cells are one component.
+// Two objects are merged if one component holds both of them, although their true cells do not touch, not even at a
+// corner. So there is a visible gap between them. An object is split if several components hold it although its own
+// cells are one component.
 #pragma once
 
 #include "belief/metrics.hpp"

@@ -7,9 +7,9 @@
 namespace palpate {
 namespace {
 
-/// Halves the log odds of probabilities above one half. Surfaces have steps that a GP does not expect, so heights make
-/// outliers too certain. Without this correction, 83 % of 402 contacts with a probability of 90 % or more were
-/// outliers.
+/// Halves the log odds of probabilities above one half. Real surfaces have steps that a GP does not expect, so the
+/// computed probabilities of outliers are too close to 1. Without this correction, 83 % of 402 contacts with a
+/// probability of 90 % or more were outliers.
 double tempered(double probability) {
   if (probability <= 0.5) return probability;
   const double odds = std::sqrt(probability / (1.0 - probability));

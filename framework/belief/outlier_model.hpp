@@ -21,19 +21,20 @@ class OutlierModel {
   /// `prior`: probability that a contact is an outlier, in (0, 1). `candidates` must outlive the model.
   OutlierModel(double prior, const CandidateGrid& candidates) : prior_(prior), surface_(candidates) {}
 
-  /// Computes the probabilities again. Returns false if there are too many contacts, and the probabilities of earlier
-  /// ones are kept. `objects`: the built GP of the heights on objects, with all data. `footprint` has the probabilities
-  /// of wrong labels; null: all labels are right.
+  /// Computes the probabilities again. If there are too many contacts, it returns false: earlier contacts keep their
+  /// probabilities, and later contacts have 0. `objects`: the built GP of the heights on objects, with all data.
+  /// `footprint` computes the probabilities of wrong labels; if it is null, all labels count as right.
   bool update(const ContactLog& log, const GpModel& objects, const Footprint* footprint);
   /// Removes the surface, because labels have changed.
   void reset() { surface_.reset(); }
 
-  /// Returns the probability of each contact at the latest update(); empty before.
+  /// Returns the outlier probability of each contact at the latest update(); empty before the first update().
   const Eigen::VectorXd& probabilities() const { return probabilities_; }
   /// Returns the probabilities of wrong labels alone, without the heights.
   const Eigen::VectorXd& by_label() const { return by_label_; }
 
-  /// Returns the surface without outliers. It has no map while is_surface() is false; the GP then has the surface.
+  /// Returns the surface without outliers. While is_surface() is false, it has no map, and the surface is that of the
+  /// GP.
   RobustSurface& surface() { return surface_; }
   const RobustSurface& surface() const { return surface_; }
   bool is_surface(const GpModel& objects) const {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The surface of `surface: two_part`: the GP of the heights on objects, without outliers. Where the footprint has no
-// object, the surface is the desk.
+// The model of object heights for `surface: two_part`: a GP of the heights on objects, without outliers. Where the
+// footprint has no object, the reconstructed surface is the desk, whatever this model computes.
 #pragma once
 
 #include "belief/gp_model.hpp"
@@ -16,7 +16,8 @@ namespace palpate {
 
 class SurfaceModel {
  public:
-  /// `outlier_probability`: prior of a contact; nullopt: there are no outliers. `desk`: its height, metres.
+  /// `outlier_probability`: prior probability that a contact is an outlier; nullopt for no outlier model. `desk`:
+  /// height of the desk, metres.
   SurfaceModel(GpModel gp, const std::optional<double>& outlier_probability, const CandidateGrid& candidates,
                double desk);
 
@@ -29,17 +30,18 @@ class SurfaceModel {
   /// Removes all data, because labels have changed.
   void reset();
 
-  /// Returns whether the config has an outlier model. outliers() returns that model, null if there is none or before
+  /// Returns whether the config has an outlier model. outliers() returns this model; null if there is none, and before
   /// show().
   bool has_outliers() const { return outliers_.has_value(); }
   const OutlierModel* outliers() const { return outliers_ && gp_.is_built() ? &*outliers_ : nullptr; }
-  /// Computes the outliers again from the data of the GP. outliers() must not be null. `footprint` has the
+  /// Computes the outliers again from the data of the GP. outliers() must not be null. `footprint` computes the
   /// probabilities of wrong labels; may be null.
   void find_outliers(const ContactLog& log, const Footprint* footprint);
 
   /// Updates the maps. Throws Error for values that are not finite.
   void update_maps(const ContactLog& log);
-  /// Return M values: metres in the frame of the scene, and square metres. Empty before the first update_maps().
+  /// Return mean (metres, in the frame of the scene) and variance (square metres), M values each. Both are empty before
+  /// the first update_maps().
   const Eigen::VectorXd& mean() const { return mean_; }
   const Eigen::VectorXd& variance() const { return variance_; }
   /// Returns mean and standard deviation at a candidate without a map, bitwise equal to those of the maps. Requires

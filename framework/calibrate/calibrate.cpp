@@ -21,18 +21,19 @@ constexpr double kMillimetre = 1e-3;
 constexpr double kMillimetrePerMinute = 1e-3 / 60.0;
 /// Largest height of a false contact above the highest object, metres.
 constexpr double kAbove = 0.1;
-/// At most one in kFar contacts of a run may be far from its scene. A larger share of false contacts would be
-/// implausible. The scene then differs from its config.
+/// At most one in kFar contacts of a run may be far from the scene. A larger share is implausible for false contacts
+/// and shows that the scene differs from its config.
 constexpr std::size_t kFar = 5;
-/// At most one in kThrough contacts may be inside an object, because false contacts occur above the surface.
+/// At most one in kThrough contacts of a run may be below the surface, because false contacts occur above it.
 constexpr std::size_t kThrough = 20;
-/// Largest offset in addition to that of the assumed effects, metres. A larger offset shows that the desk has another
-/// height. With the paper's motion, the offset of a perfect arm is 14 mm.
+/// Largest offset in addition to the offset of the assumed effects, metres. A larger offset shows that the desk has
+/// another height than in the config. For comparison, a perfect arm with the motion `paper` has an offset of 14 mm.
 constexpr double kMostOffset = 0.03;
-/// Least share of its events that an effect must show in these motions. With less, its rate cannot be estimated.
+/// Least share of an effect's events (such as missed contacts) that must be visible in the results of the recorded
+/// motions. With a smaller share, the rate of the effect cannot be estimated.
 constexpr double kShown = 0.1;
 
-/// Effects that these taps cannot estimate, with default values for an arm of Baxter's class.
+/// Effects that cannot be estimated from such taps, with default values for an arm similar to Baxter's.
 constexpr std::pair<const char*, const char*> kAssumed[] = {{"force_noise", "{deviation: 1.5 N}"},
                                                             {"force_drift", "{per_metre: 10 N/m}"},
                                                             {"stiffness", "{object: 1500 N/m}"},
@@ -60,7 +61,7 @@ struct CalibrationRun {
   const RecordedRun& recording;
   std::unique_ptr<const Scene> scene;
   SimulatedRerun rerun;
-  SimulatedRerun::Result made;  ///< result of simulating the taps with the assumed effects
+  SimulatedRerun::Result made;  ///< result with the assumed effects
   std::size_t contacts = 0;
 
   CalibrationRun(const RunEnvironment& environment, const RecordedRun& from)
@@ -102,7 +103,7 @@ class Calibrated {
       lines += fmt::format("  {}: {}  # {}\n", effect, value, what);
       effects.at(effect) = parse_yaml(value, "calibrate");
     };
-    // The offset of the effect is the offset at the first tap.
+    // The effect's parameter `constant` is the offset at the first tap.
     const double drift = fit_.drift ? fit_.drift->value : 0.0;
     line("height_offset",
          fmt::format("{{constant: {:.4g} mm, drift: {:.4g} mm/min}}",
@@ -186,8 +187,8 @@ class Calibrated {
         (variance / static_cast<double>(requests.size()) - simulated_variance_) / static_cast<double>(runs_.size());
   }
 
-  /// Adds the rate at which the simulator shows as many events as the arm's record. The share of shown events is linear
-  /// in the rate, so its values at the rates 0 and 1 determine it.
+  /// Adds a line with the rate at which the simulated taps show the same share of events as the recorded taps (`seen`).
+  /// The simulated share is linear in the rate, so simulations with the rates 0 and 1 determine the rate.
   template <class Line, class Shown>
   void rate(const Line& line, const char* effect, const Estimated& seen, const std::string& what, const Shown& shown) {
     double none = 0.0;
@@ -207,7 +208,8 @@ class Calibrated {
                      100.0 * (all - none)));
   }
 
-  /// Returns the expected error of a height in addition to that of the assumed effects, metres.
+  /// Returns the expected error of a height in addition to the error of the assumed effects, metres. `elapsed`: arm
+  /// time, seconds.
   double offset_at(double elapsed) const {
     return fit_.offset.value + (fit_.drift ? fit_.drift->value * (elapsed - fit_.mean_elapsed) : 0.0);
   }

@@ -11,16 +11,17 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 constexpr double kNormal975 = 1.95996398454005423552;
-/// Twice the largest difference of log likelihoods within a 95 % interval (quantile of chi square with one degree of
-/// freedom).
+/// 95 % quantile of chi square with one degree of freedom. Twice the difference from the largest log likelihood is at
+/// most this number within a 95 % interval.
 constexpr double kChiSquare95 = 3.84145882069412447634;
 
-constexpr double kLeastNoise = 5e-5;  // metres; without this bound the likelihood would be infinite at 0
+// metres; without this bound, the likelihood could grow without limit as the noise approaches 0
+constexpr double kLeastNoise = 5e-5;
 constexpr double kFinestPlace = 2.5e-4;
 constexpr double kFarthestPlace = 0.01;
 
-/// Returns the heights of the scene around each contact: one row per contact, one column per position. The positions
-/// have equal probability under the lateral deviation.
+/// Returns the heights of the scene at positions around each contact: one row per contact, one column per position. The
+/// positions are equally probable under lateral errors with the standard deviation `lateral`.
 Eigen::MatrixXd heights_around(const std::vector<KnownContact>& contacts, double lateral) {
   constexpr int kRings = 8;
   constexpr int kSpokes = 16;
@@ -28,7 +29,7 @@ Eigen::MatrixXd heights_around(const std::vector<KnownContact>& contacts, double
   Eigen::MatrixXd out(static_cast<Eigen::Index>(contacts.size()), places);
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     for (int k = 0; k < places; ++k) {
-      // The distance from the centre has a Rayleigh distribution, whose quantiles have a closed form.
+      // The length of the lateral error has a Rayleigh distribution, whose quantiles have a closed form.
       const int ring = k / kSpokes;
       const double radius = lateral * std::sqrt(-2.0 * std::log(1.0 - (ring + 0.5) / kRings));
       const double angle = 2.0 * kPi * ((k % kSpokes) + 0.5 * (ring % 2)) / kSpokes;
@@ -43,7 +44,8 @@ struct FitState {
   double offset = 0.0, drift = 0.0, noise = 0.003, false_share = 0.02;
   double log_likelihood = 0.0;
   double true_contacts = 0.0;
-  double time_squares = 0.0;  ///< sum of squared times of the true contacts about their mean
+  /// sum of the squared deviations of the times of true contacts from their mean, square seconds
+  double time_squares = 0.0;
 };
 
 class ExpectationMaximisation {
@@ -75,7 +77,7 @@ class ExpectationMaximisation {
   }
 
  private:
-  /// Returns the median error of the heights, where the fit starts.
+  /// Returns the median error of the heights, the initial offset of the fit.
   double start() const {
     Eigen::VectorXd off = measured_ - heights_.rowwise().mean();
     const auto middle = off.data() + off.size() / 2;
@@ -112,7 +114,8 @@ class ExpectationMaximisation {
     const double squares = ee - 2.0 * now.offset * e - 2.0 * now.drift * te + n * now.offset * now.offset +
                            2.0 * now.offset * now.drift * t + now.drift * now.drift * tt;
     now.noise = std::max(kLeastNoise, std::sqrt(std::max(0.0, squares) / n));
-    // At least one in a thousand contacts counts as false, because expectation maximisation never leaves a share of 0.
+    // A thousandth of a contact is added to the false contacts, because expectation maximisation never leaves a share
+    // of 0.
     now.false_share =
         (static_cast<double>(measured_.size()) - n + 1e-3) / (static_cast<double>(measured_.size()) + 1.0);
   }

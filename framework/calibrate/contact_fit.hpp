@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
 // Fit of an arm's errors to contacts with a known scene, by maximum likelihood.
 //
-// A true contact at the requested position p has the error e = h(p + q) + b + d t + noise. Here q is normal with equal
-// deviations along x and y. A false contact is anywhere on the path of the tool. Expectation maximisation (Dempster,
-// Laird and Rubin 1977) finds the offset b, the drift d, the noise and the share of false contacts. It runs for each
-// lateral deviation on a grid. The fit takes the most likely lateral deviation. Its interval is that of the profile
-// likelihood. Only taps near steps of the surface determine the lateral deviation.
+// A true contact at the requested position p and time t has the measured height h(p + q) + b + d * t + noise, where h
+// is the height of the scene. The lateral error q is normal with equal standard deviations along x and y. A false
+// contact is anywhere on the path of the tool. Expectation maximisation (Dempster, Laird and Rubin 1977) finds the
+// offset b, the drift d, the noise and the share of false contacts. It runs for each lateral standard deviation on a
+// grid. The fit takes the most likely lateral standard deviation, with the interval of the profile likelihood. Only
+// taps near steps of the surface determine the lateral standard deviation.
 #pragma once
 
 #include <palpate/scene.hpp>
@@ -22,17 +23,19 @@ struct Estimated {
 };
 
 struct KnownContact {
-  const Scene* scene = nullptr;  ///< scene of the contact, with its objects in their positions at that time
-  Target place;                  ///< requested position
-  double elapsed = 0.0;          ///< arm time before the contact, seconds
-  double height = 0.0;           ///< measured height minus the known error, metres
+  /// scene of the contact, with the objects at their positions at the time of the contact
+  const Scene* scene = nullptr;
+  Target place;          ///< requested position
+  double elapsed = 0.0;  ///< arm time before the contact, seconds
+  double height = 0.0;   ///< measured height minus the simulated error of the assumed effects, metres
 };
 
 struct ContactFit {
-  Estimated offset;                ///< metres; offset at the mean time of the contacts if there is a drift
+  /// offset of the measured heights, metres; with a drift, the offset at the mean time of the contacts
+  Estimated offset;
   std::optional<Estimated> drift;  ///< metres per second; nullopt if not significantly different from 0
-  Estimated noise;                 ///< standard deviation of a height, metres
-  /// Standard deviation of the position along x and y, metres; nullopt if the taps do not determine it.
+  Estimated noise;                 ///< standard deviation of the noise of a measured height, metres
+  /// Standard deviation of the lateral error along x and along y, metres; nullopt if the taps do not determine it.
   std::optional<Estimated> lateral;
   Estimated false_share;      ///< share of false contacts among all contacts
   double mean_elapsed = 0.0;  ///< mean time of the contacts, seconds
@@ -41,8 +44,9 @@ struct ContactFit {
 /// Fits at least 3 contacts. False contacts are distributed uniformly over `range` metres of height.
 ContactFit fit_contacts(const std::vector<KnownContact>& contacts, double range);
 
-/// Compares a contact's height minus `offset` with all heights of its scene within 1 cm of its position. Returns by how
-/// many metres the contact is above all of them (positive) or below all of them (negative), else 0.
+/// Compares the height of a contact, minus `offset`, with all heights of the scene within 1 cm of the contact's
+/// position. Returns the signed distance to the range of these heights in metres: positive above all of them, negative
+/// below all of them, else 0.
 double beyond_surface(const KnownContact& contact, double offset);
 
 /// Returns the share `count` / `all` with Wilson's interval (1927). Both numbers may be fractional.

@@ -12,7 +12,7 @@ namespace palpate {
 namespace {
 
 constexpr int kDraws = 24;
-/// Ratio of the standard deviation of a normal variable to its median absolute deviation.
+/// Ratio of standard deviation to median absolute deviation for a normal distribution.
 constexpr double kOfNormal = 1.4826;
 
 /// Returns the median, or 0 if there are no values.
@@ -25,9 +25,9 @@ double median(std::vector<double> values) {
 
 /// Errors of all taps over all draws of the effects.
 struct RerunErrors {
-  /// errors of the heights in metres: one list per tap, with one error per draw that had a contact
+  /// errors of the heights, metres: one list per tap, with one error per draw in which the tap made a contact
   std::vector<std::vector<double>> errors;
-  double failed = 0.0;  ///< number of taps without a contact
+  double failed = 0.0;  ///< number of taps without a contact over all draws, except unreachable taps
 };
 
 RerunErrors draw_taps(const RunEnvironment& environment, const Scene& scene, const PluginChoice& choice,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The parts of the build that a command line needs besides `palpate` itself. The script ./palpate calls the program
-// with --needs before the other words, and then builds these parts.
+// with --needs before the other arguments, and then builds the parts that it prints.
 #pragma once
 
 #include "cli/program.hpp"
@@ -10,9 +10,9 @@
 
 namespace palpate::cli {
 
-/// Collects the parts that a command needs. As a PluginSource, this object notes each plugin whose options are read.
-/// The functions do not throw, because the command itself reports an invalid config. If a plugin names other plugins,
-/// these become known after the first plugin is built.
+/// Collects the parts that a command needs. As a PluginSource, this object records each plugin whose options are read.
+/// The functions do not throw, because the command itself reports an invalid config. Plugins that are named in the
+/// options of another plugin become known only after that plugin is built.
 class Needs final : public PluginSource {
  public:
   explicit Needs(Program& program) : program_(program) {}
@@ -21,7 +21,8 @@ class Needs final : public PluginSource {
   void whole() { whole_ = true; }
   /// Adds all plugins of this build.
   void every_plugin() { every_plugin_ = true; }
-  /// Adds palpate-whole and all plugins. A sweep needs all plugins, because its plugins are known only after planning.
+  /// Adds palpate-whole and all plugins. A sweep needs all plugins, because the plugins of its jobs are known only
+  /// after it is planned.
   void everything() { whole_ = every_plugin_ = true; }
   /// Adds the plugins of a config, including those that the config chooses by default. If `sweeps` is set, a config
   /// with a 'sweep:' block needs everything.
@@ -39,7 +40,7 @@ class Needs final : public PluginSource {
   /// parts.
   void print() const;
 
-  /// Returns whether a plugin is not built, so that its options are unknown.
+  /// Returns whether a plugin is not built. The options of such a plugin are unknown.
   bool is_silent(const std::string& kind, const std::string& name) const override;
   void describe(const std::string& kind, const std::string& name, Fields& fields) const override;
 

@@ -17,8 +17,9 @@ namespace {
 constexpr const char* kRecordForms =
     ". Give the directory, a folder that contains the directory, NAME in runs/, or NAME@latest";
 
-/// Returns the error of a wrong command line. The function has its own texts for unknown commands, and for several
-/// records where a command takes one (the shell may have expanded a *). All other errors have the text of CLI11.
+/// Returns the error for an invalid command line. The function has its own texts for unknown commands, and for several
+/// records given to a command that takes one (the shell may have expanded a *). All other errors have the text of
+/// CLI11.
 Error usage_error(const CLI::App& app, const CLI::Error& trouble, const std::string& first) {
   const std::vector<CLI::App*> chosen = app.get_subcommands();
   if (chosen.empty() && !first.empty() && first.front() != '-') {
@@ -130,7 +131,7 @@ CommandLine::CommandLine(const Installation& installation, bool is_query)
           "palpate")),
       is_query_(is_query) {
   app_->require_subcommand(1);
-  // A command copies the formatter when it is added, so the formatter is set before.
+  // A command copies the formatter when it is added, so the formatter is set first.
   app_->formatter_fn(
       [](const CLI::App* command, const std::string&, CLI::AppFormatMode) { return help_text(*command); });
   app_->set_help_flag("-h,--help", "print this help and stop");

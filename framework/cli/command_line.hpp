@@ -22,7 +22,7 @@ class Option;
 
 namespace palpate::cli {
 
-/// An option or positional argument of a command. A Rule configures one.
+/// An option or positional argument of a command, and a function that configures it.
 using Argument = CLI::Option*;
 using Rule = std::function<void(CLI::Option&)>;
 
@@ -51,17 +51,17 @@ class Command {
   Command(CLI::App* app, bool finds_records) : app_(app), finds_records_(finds_records) {}
 
   /// Adds an option or a positional argument. The names of options begin with a dash. `of` is the name of the value in
-  /// the help. Values can be text, whole numbers, optional whole numbers or texts, and lists.
+  /// the help. A value is a text or a whole number. It may be optional, or a list.
   template <class Value>
   Argument argument(const char* name, Value& value, const char* of, const std::string& help, Rules rules = {}) const;
   Argument flag(const char* name, bool& value, const std::string& help, Rules rules = {}) const;
 
-  /// Adds a required argument that names a run or sweep, or several of them. The variable receives the directories, as
-  /// find_record() returns them.
+  /// Adds a required argument that names a run or sweep, or several of them. The variable receives the directories that
+  /// find_record() returns.
   template <class Texts>
   void record(const char* name, Texts& directories, Wanted wanted, const std::string& help) const;
-  /// Adds a required argument that names sweeps and runs. They count as one sweep. The variable receives the words of
-  /// the command line, for find_records().
+  /// Adds a required argument that names sweeps and runs, which are pooled into one sweep. The variable receives the
+  /// words of the command line, as find_records() takes them.
   void pooled_records(std::vector<std::string>& words) const;
 
   /// Sets the example commands in the help text.
@@ -75,14 +75,14 @@ class Command {
 /// The command line of the program.
 class CommandLine {
  public:
-  /// `is_query`: whether the program only answers a query, for completions or for the parts that a command needs. No
-  /// command is then performed.
+  /// `is_query`: whether the program performs no command, but only prints completions or the parts that a command
+  /// needs.
   CommandLine(const Installation& installation, bool is_query);
   ~CommandLine();
 
-  /// Adds a command and returns it with its arguments. They live as long as this object. `function` performs the
-  /// command and returns the exit status. It may be a function that only `palpate-whole` has. `needed` adds the parts
-  /// of the build that the command needs.
+  /// Adds a command and returns it with its arguments, which live as long as this object. `function` performs the
+  /// command and returns the exit status. It may be null in `palpate` (see PALPATE_WHOLE). `needed` adds the parts of
+  /// the build that the command needs.
   template <class Arguments>
   std::pair<Command, Arguments&> add(const char* name, const char* help, int (*function)(Program&, const Arguments&),
                                      void (*needed)(Needs&, const Arguments&)) {
@@ -110,14 +110,15 @@ class CommandLine {
 
   std::unique_ptr<CLI::App> app_;
   bool is_query_;
-  Actions chosen_;  ///< actions of the command that the words name
+  Actions chosen_;  ///< actions of the command that was parsed
 };
 
 /// Adds the command `named`. If there is no such command, adds all commands in the order of `--help`. Adding all
-/// commands takes a tenth of the time of a short run.
+/// commands would take a tenth of the time of a short run.
 void add_commands(CommandLine& line, const std::string& named);
 
-/// For commands that need the whole program, or the whole program and all plugins, with any arguments.
+/// Values of `needed` for commands that, whatever their arguments, need palpate-whole, or palpate-whole and all
+/// plugins.
 constexpr auto kNeedsWhole = [](Needs& needs, const auto&) { needs.whole(); };
 constexpr auto kNeedsEverything = [](Needs& needs, const auto&) { needs.everything(); };
 

@@ -25,7 +25,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Returns the path of the table, which is next to results.csv. Each condition and each number of taps has a separate
+/// Returns the path of the CSV table, in the folder of results.csv. Each condition and each checkpoint has a separate
 /// file.
 fs::path table_file(const Sweep& sweep, const Comparison& comparison, const std::string& where) {
   std::string name = fmt::format("compare_{}_{}", slug(fmt::format("{}", fmt::join(comparison.by, "_"))),
@@ -34,7 +34,8 @@ fs::path table_file(const Sweep& sweep, const Comparison& comparison, const std:
   return sweep.directory / (name + where_suffix(where) + ".csv");
 }
 
-/// Returns the points of the runs at which jobs are compared. Each appears once, in the order of the command line.
+/// Returns the checkpoints at which jobs are compared, each once: the goal of --until first, then the numbers of --at
+/// in their order.
 std::vector<Checkpoint> occasions_of(const CompareArguments& arguments) {
   std::vector<Checkpoint> out;
   if (arguments.until) out.push_back(Checkpoint::once(field_name(*arguments.until)));
@@ -45,8 +46,8 @@ std::vector<Checkpoint> occasions_of(const CompareArguments& arguments) {
   return out;
 }
 
-/// Returns the parts of a comparison that the output format shows. Throws Error if options about pairs are combined
-/// with a format that has no pairs.
+/// Returns the parts of a comparison that the output format shows. Throws Error if --ratio or --baseline is combined
+/// with a format that shows no pairs.
 CompareExtent extent_of(const CompareArguments& arguments) {
   const bool pairs = arguments.format != "markdown" && arguments.format != "latex";
   for (const char* const option : {arguments.ratio ? "--ratio" : "", arguments.baseline ? "--baseline" : ""}) {
@@ -71,9 +72,9 @@ std::string rows_text(const std::vector<Comparison>& comparisons, const CompareA
   return out + "\n]\n";
 }
 
-/// Returns all comparisons. There is one per metric at the end of the jobs, or one per metric and number of taps.
-/// Returns nullopt after an interrupt. All comparisons are computed before the first is printed. An unknown metric
-/// therefore causes an error without any output.
+/// Returns one comparison per metric and checkpoint, or one per metric at the end of the jobs. Returns nullopt after an
+/// interrupt. All comparisons are computed before the first is printed, so an unknown metric causes an error without
+/// other output.
 std::optional<std::vector<Comparison>> compare_all(const Program& program, const Sweep& sweep,
                                                    const CompareArguments& arguments) {
   const std::optional<Condition> where = Condition::of_command_line(arguments.where);
@@ -92,8 +93,8 @@ std::optional<std::vector<Comparison>> compare_all(const Program& program, const
     add(sweep_results(sweep), std::nullopt);
     return comparisons;
   }
-  // Invalid metrics are rejected before the computation. The condition is left out here, because its values are not
-  // computed yet.
+  // Invalid metrics are rejected before the long computation. The condition is not passed here, because the values that
+  // it needs are not computed yet.
   for (const std::string& metric : arguments.metrics) {
     if (arguments.until && metric == kReached) continue;
     palpate::compare(sweep, sweep_results(sweep),

@@ -7,14 +7,14 @@
 namespace palpate::cli {
 
 struct CompareArguments {
-  std::vector<std::string> records;  ///< words that name sweeps and runs, for find_records(); these count as one sweep
+  std::vector<std::string> records;  ///< sweeps and runs, as find_records() takes them; they are pooled into one sweep
   std::vector<std::string> by;
   std::vector<std::string> metrics;
   std::optional<std::string> where;
   std::optional<std::string> baseline;
   /// numbers of taps at which jobs are compared; if empty, jobs are compared at their ends
   std::vector<int> at;
-  std::optional<std::string> until;  ///< COLUMN=VALUE: jobs are compared at the tap that reached this value
+  std::optional<std::string> until;  ///< COLUMN=VALUE: jobs are compared after the first tap that reached this value
   bool ratio = false;
   std::string format = "text";
   std::optional<int> workers;

@@ -19,8 +19,8 @@ namespace {
 namespace fs = std::filesystem;
 using boost::starts_with;
 
-/// Returns the argument of `command` to which the word `last` after the word `previous` belongs. Returns null if there
-/// is none. `command` must have parsed all earlier words.
+/// Returns the argument of `command` to which the word `last` belongs; null if there is none. `previous` is the word
+/// before `last`. `command` must have parsed all words before `last`.
 const CLI::Option* argument_of(const CLI::App& command, const std::string& previous, const std::string& last) {
   const auto with_value = [&](const std::string& word) {
     const CLI::Option* option = starts_with(word, "-") ? command.get_option_no_throw(word) : nullptr;
@@ -92,8 +92,9 @@ std::vector<Completion> plugins_by_kind(const Program& program, bool names) {
   return out;
 }
 
-/// Completes the value after the last comma of `typed`. `values` are completions of the part after this comma. The
-/// results are whole words.
+/// Completes the last value of the comma-separated values in `typed`, which begin at index `from`. `values`:
+/// completions for a single value after the first `from` characters. In the results, the text of `typed` up to its last
+/// comma replaces these characters.
 std::vector<Completion> after_comma(const std::string& typed, std::size_t from, std::vector<Completion> values) {
   const auto comma = typed.rfind(',');
   if (comma == std::string::npos || comma < from) return values;
@@ -111,8 +112,8 @@ std::vector<Completion> axis(Program& program, const std::string& config, const 
   return after_comma(typed, equals + 1 + bracket, std::move(out));
 }
 
-/// Returns the completions for the value of an option, according to the value's name in the help. Files and free texts
-/// have no completions.
+/// Returns the completions for the value of an option, according to the name of the value in the help, such as CONFIG
+/// or RUN. Other files and free texts have no completions.
 std::vector<Completion> values_of(const CLI::App& command, const CLI::Option& option, const std::string& typed,
                                   Program& program) {
   std::vector<Completion> out;
@@ -140,7 +141,7 @@ std::vector<Completion> values_of(const CLI::App& command, const CLI::Option& op
 std::vector<Completion> completions(CLI::App& app, Program& program, const std::vector<std::string>& words) {
   std::vector<Completion> out;
   std::string typed = words.back();
-  std::string kept;  // prefix of the word that stays, for example "--launcher="
+  std::string kept;  // prefix of the last word that is not completed, for example "--launcher="
   if (words.size() == 1) {
     for (const CLI::App* one : app.get_subcommands({})) out.push_back({one->get_name(), one->get_description()});
     for (Completion& one : options_of(app)) out.push_back(std::move(one));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Shell completion of commands, options, configs, groups, keys, values, plugins and runs. The scripts in cli/shells
-// call the program each time the user presses Tab. If there is no completion, they offer files.
+// call the program each time the user presses Tab. If there is no completion, the scripts offer files.
 #pragma once
 
 #include "cli/program.hpp"
@@ -16,13 +16,13 @@ namespace palpate::cli {
 
 /// A possible completion of a word.
 struct Completion {
-  std::string word;     ///< the completed word; text may follow it after '=', '.', '/' or ','
+  std::string word;     ///< the completed word; if it ends with '=', '.', '/' or ',', more text may follow
   std::string meaning;  ///< one line; may be ""
 };
 
-/// Returns the completions of the last one of `words`. These are the words after `palpate`. The last word may be empty
-/// or incomplete. The function writes, runs and builds nothing. It skips broken configs and plugins, and opens only
-/// those plugins whose options it needs.
+/// Returns the completions of the last of `words`, the words after `palpate`. The last word may be empty or incomplete.
+/// The function writes no files, and runs and builds nothing. It skips broken configs and plugins, and opens only those
+/// plugins whose options it needs.
 std::vector<Completion> completions(CLI::App& app, Program& program, const std::vector<std::string>& words);
 
 }  // namespace palpate::cli

@@ -29,9 +29,9 @@ namespace fs = std::filesystem;
 
 constexpr std::array<const char*, 4> kExtensions{".csv", ".png", ".pdf", ".svg"};
 
-/// Returns the files to write: the files of -o, or else one picture and one table next to results.csv. A PDF comes
-/// last. All pictures with the same name share a gnuplot script, and the script that remains should be the one of the
-/// PDF, because papers use it.
+/// Returns the files to write: the files of -o, or else one picture and one table in the folder of results.csv. PDFs
+/// come last. Pictures whose names differ only in the extension overwrite each other's gnuplot script, and the script
+/// of the PDF should remain, because papers use PDFs.
 std::vector<fs::path> curve_files(const Sweep& sweep, const CurvesArguments& arguments,
                                   const std::vector<std::string>& by, const std::string& metric) {
   std::vector<fs::path> out(arguments.outputs.begin(), arguments.outputs.end());
@@ -104,7 +104,7 @@ int curves(Program& program, const CurvesArguments& arguments) {
     throw Error("command line", fmt::format("--metric: '{}' names several columns, but a figure shows one", asked),
                 "draw one figure per column");
   const std::optional<Condition> where = Condition::of_command_line(arguments.where);
-  // Invalid keys and metrics are rejected before the computation.
+  // Invalid keys and metrics are rejected before the long computation.
   check_group_keys(sweep, by);
   if (!results.empty()) find_metric(sweep, asked, names_of(results));
   const std::string metric = field_name(asked);

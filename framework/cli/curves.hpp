@@ -7,8 +7,8 @@
 namespace palpate::cli {
 
 struct CurvesArguments {
-  std::vector<std::string> records;  ///< words that name sweeps and runs, for find_records(); these count as one sweep
-  std::vector<std::string> by;       ///< keys of the groups; if empty, curve_keys() of the sweep
+  std::vector<std::string> records;  ///< sweeps and runs, as find_records() takes them; they are pooled into one sweep
+  std::vector<std::string> by;       ///< swept keys that define the groups; if empty, curve_keys() of the sweep
   std::string metric;                ///< "": main_error() of the results
   std::string against = "taps";
   std::optional<std::string> where;

@@ -23,7 +23,7 @@ std::string error_words(double metres) { return usual_scale(Unit::metre).quantit
 std::string share_text(const std::optional<double>& value) { return value ? fmt::format("{:.2f}", *value) : "-"; }
 
 /// Returns a line such as "error: 2.6 mm over the scene (expected 3.1 mm), 5.9 mm on the object; footprint IoU 1.00".
-/// If the truth is unknown, the line has only the expected error. Returns "" if there is no expected error either.
+/// If the truth is unknown, the line has only the expected error. Returns "" if the expected error is unknown, too.
 std::string error_line(const Row& summary) {
   const Errors errors = errors_in(summary);
   const std::optional<double> expected = summary.number(kExpectedError);
@@ -51,7 +51,7 @@ std::string numerics_line(const Row& row) {
 }
 
 /// Returns a line with the taps whose final label differs from the label in the table and in taps.csv. Returns "" if
-/// there are none.
+/// there are no such taps.
 std::string relabelled_line(const Row& summary) {
   std::string line;
   for (const Relabelled& one : relabelled_in(summary)) {
@@ -110,7 +110,7 @@ std::string displayable(std::string_view text) {
 }
 
 void print_message(const std::string& text) {
-  // If stdout and stderr go to the same file, this keeps their order.
+  // If stdout and stderr go to the same file, this call keeps the order of the texts.
   flush_output();
   std::fputs(displayable(text).c_str(), stderr);
 }

@@ -11,7 +11,7 @@
 
 namespace palpate::cli {
 
-/// Prints one line per tap on stdout. A terminal also shows a live line during the tap.
+/// Prints one line per tap on stdout. On a terminal, also shows a live line during the tap.
 class TapTable final : public Observer {
  public:
   explicit TapTable(std::int64_t budget);
@@ -27,14 +27,14 @@ class TapTable final : public Observer {
   bool header_ = false;
 };
 
-/// Terminal codes that erase the current line.
+/// Terminal codes that return to the beginning of the line and erase the line.
 constexpr std::string_view kClearLine = "\r\x1b[K";
 
 /// Returns the result of printable() for `text`, except that kClearLine at its beginning is kept.
 std::string displayable(std::string_view text);
 
-/// Writes a message about the progress of the work on stderr, after conversion by displayable(). If the terminal is
-/// closed, fmt::print would throw; this function ignores the failure.
+/// Writes a message about the progress of the work on stderr, after conversion by displayable(). Ignores a failure, for
+/// example because the terminal was closed (fmt::print would throw).
 void print_message(const std::string& text);
 
 /// Returns a line with the path of the record, or with the command that resumes the run.

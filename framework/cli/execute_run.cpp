@@ -31,7 +31,8 @@ int execute_run(const Program& program, const ResolvedConfig& config, const RunO
   RunReport report;
   const std::optional<Error> trouble = catch_error([&] {
     report = action(observers);
-    if (watcher) watcher->start();  // A run without further taps calls neither announce() nor record().
+    // A run that makes no further tap does not call announce(), which starts the watcher.
+    if (watcher) watcher->start();
   });
   std::vector<RunOutcome> runs{{"run " + config.id, "", trouble ? trouble->what() : "", {}}};
   // Continuous integration must see a failed run as a result.

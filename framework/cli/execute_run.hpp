@@ -20,9 +20,9 @@ struct RunOutput {
   std::filesystem::path watched{};  ///< run directory whose page another process serves; "": none
 };
 
-/// Function that starts or resumes the run with the given observers. Prints the result and checks the expectations of
-/// the config. Returns the exit status. Throws Error.
+/// Function that starts or resumes the run with the given observers.
 using RunAction = std::function<RunReport(const std::vector<Observer*>& observers)>;
+/// Calls `action`, prints the result and checks the expectations of the config. Returns the exit status. Throws Error.
 int execute_run(const Program& program, const ResolvedConfig& config, const RunOutput& output, const RunAction& action);
 
 }  // namespace palpate::cli

@@ -9,7 +9,7 @@
 
 namespace palpate::cli {
 
-/// Files and streams that receive the results of the expectations.
+/// Outputs that receive the results of the expectations.
 struct GateOutput {
   std::string suite;             ///< name of the experiment
   std::string junit;             ///< JUnit file; "": none
@@ -17,7 +17,7 @@ struct GateOutput {
 };
 
 /// Throws Error of kind `usage` if the folder of `junit` is not writable. Call this function before a long sweep, so
-/// that the error does not appear only after it.
+/// that the error appears before it and not at its end.
 void check_junit(const std::string& junit);
 
 /// Writes the JUnit file if `output.junit` names one. Throws Error.
@@ -28,7 +28,8 @@ void write_junit(const std::vector<Verdict>& verdicts, const std::vector<RunOutc
 bool conclude(const std::vector<Expectation>& expectations, const std::vector<RunOutcome>& runs,
               const GateOutput& output);
 
-/// Returns the exit status of a sweep. Failed runs make the sweep fail, unless an expectation is about their number.
+/// Returns the exit status of a sweep. A sweep fails if an expectation does not hold. Failed runs also make it fail,
+/// unless an expectation is about the number of failed runs.
 int sweep_status(const std::vector<Expectation>& expectations, bool all_hold, bool any_failed);
 
 }  // namespace palpate::cli

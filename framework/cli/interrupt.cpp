@@ -11,14 +11,14 @@
 namespace palpate::cli {
 namespace {
 
-/// The first Ctrl-C stops the run after the present tap. The second one ends the program.
+/// The first Ctrl-C stops the run after the current tap. The second one ends the program.
 extern "C" void on_key(int signal) {
   if (interrupted.exchange(true)) std::_Exit(128 + signal);
 }
 
-/// SIGTERM and SIGHUP only set the flag, however often they come. A closed terminal sends several of these signals, and
-/// a scheduler signals each process of a job. None of these signals is a request to leave a robot's arm in the middle
-/// of a motion.
+/// SIGTERM and SIGHUP only set the flag, however often they arrive. A closed terminal sends several of these signals,
+/// and a scheduler signals each process of a job. Such repeated signals must not end the program while a robot's arm is
+/// in the middle of a motion.
 extern "C" void on_request(int) { interrupted = true; }
 
 bool followed = false;
@@ -30,7 +30,7 @@ std::atomic<bool> interrupted{false};
 void listen_for_interrupts() {
   std::signal(SIGINT, on_key);
   std::signal(SIGTERM, on_request);
-  if (std::signal(SIGHUP, on_request) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);  // nohup has set SIG_IGN
+  if (std::signal(SIGHUP, on_request) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);  // keeps the setting of nohup
 }
 
 void follow_parent() {

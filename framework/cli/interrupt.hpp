@@ -14,11 +14,11 @@ extern std::atomic<bool> interrupted;
 /// flag. A second Ctrl-C still ends the program.
 void listen_for_interrupts();
 
-/// Ends this program as SIGTERM does when its parent ends, if the environment variable PALPATE_PARENT is the process id
-/// of the parent. A sweep that Python started therefore ends if Python is killed. Call this function first in main(),
-/// while the program has a single thread.
+/// If the environment variable PALPATE_PARENT is set, makes this program end with its parent, as after SIGTERM. The
+/// variable contains the process id of the parent. Python sets it, so that a sweep that Python started ends if Python
+/// is killed. Call this function first in main(), while the program has a single thread.
 void follow_parent();
-/// Sets PALPATE_PARENT again, for the program that will replace this process.
+/// Sets PALPATE_PARENT again for the program that will replace this process, if follow_parent() found the variable.
 void keep_parent();
 
 /// Returns whether the parent process set PALPATE_PARENT. Such a parent reads the progress of the sweep.

@@ -18,8 +18,8 @@ namespace {
 using Type = FieldDescription::Type;
 using Descriptions = std::vector<FieldDescription>;
 
-/// Returns the config with the overrides that were typed so far. Invalid overrides are left out, such as a list of
-/// groups in a sweep. For an invalid config, returns an empty tree.
+/// Returns the config with the overrides that were typed so far. If an override is invalid (such as a list of groups in
+/// a sweep), all overrides are left out. For an invalid config, returns an empty tree.
 Tree config_so_far(Composer& composer, const std::string& config, const std::vector<std::string>& before) {
   Tree out = Tree::map();
   std::vector<Override> overrides;
@@ -31,7 +31,7 @@ Tree config_so_far(Composer& composer, const std::string& config, const std::vec
   return out;
 }
 
-/// The keys of a config level by level, with their values.
+/// The keys that a config can have, level by level, and their values.
 class Keys {
  public:
   Keys(const PluginHost& host, const Tree& config) : host_(host), config_(config) {}
@@ -67,7 +67,8 @@ class Keys {
     return out;
   }
 
-  /// Returns the value in the config, or else the default value. Returns "" for a value that is not a single word.
+  /// Returns the value in the config, or the default value if the config has none. Returns "" for a value that is not a
+  /// single word.
   std::string value(const FieldDescription& field, const std::string& path) const {
     const Tree* own = config_.find_path(path);
     if (own != nullptr) return own->is_scalar() ? own->text : "";
@@ -88,8 +89,8 @@ class Keys {
     return out;
   }
 
-  /// Returns the fields of an option that is in the config next to its plugin instead of within it
-  /// (Field::with_beside()).
+  /// Returns the fields of an option that has its own key next to the key of its plugin, instead of a key in the
+  /// plugin's block (Field::with_beside()).
   Descriptions of_option(const FieldDescription& option, const std::string& path) const {
     FieldDescription plugin;
     for (const FieldDescription& one : options_of(option.kind, chosen_plugin(plugin, option.kind))) {
@@ -113,7 +114,7 @@ class Keys {
     return out;
   }
 
-  /// Returns the fields, and the fields that the chosen values of other fields add.
+  /// Returns `fields` and the fields that depend on their values, such as the options of a chosen plugin.
   Descriptions beside(const Descriptions& fields, const std::string& prefix) const {
     Descriptions out = fields;
     for (const FieldDescription& field : fields) {
@@ -132,7 +133,7 @@ class Keys {
   const Tree& config_;
 };
 
-/// Returns whether there are keys within the field.
+/// Returns whether the value of the field has keys of its own.
 bool has_keys_within(const FieldDescription& field, const Tree& config, const std::string& path) {
   if (field.type == Type::section || (field.type == Type::plugin && !field.adopted)) return true;
   if (field.type != Type::sections && field.type != Type::plugins) return false;

@@ -23,7 +23,8 @@ struct LaunchArguments {
 /// Adds the options, and returns the option --quiet.
 Argument add_launch(const Command& command, LaunchArguments& launch);
 
-/// Throws Error for options that exclude each other, and for a JUnit file that cannot be written.
+/// Throws Error for cluster options without a cluster, for --junit on a cluster without --wait, and for a JUnit file
+/// that cannot be written.
 void check_launch(const LaunchArguments& launch);
 
 }  // namespace palpate::cli

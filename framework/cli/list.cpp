@@ -30,7 +30,7 @@ void print_json(const std::vector<Row>& rows) {
   print_data(fmt::format("[{}{}{}]\n", lines.empty() ? "" : "\n", fmt::join(lines, ",\n"), lines.empty() ? "" : "\n"));
 }
 
-/// Warns with the numbers of folders that are not in the list.
+/// Warns about folders that are not in the list, with their numbers.
 void warn_others(const Catalogue& all, const fs::path& folder) {
   std::vector<std::string> others;
   if (all.strangers > 0) others.push_back(counted(all.strangers, "folder") + " without a run");

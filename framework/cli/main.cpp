@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The main function. It performs the command of the command line and returns an exit status, even after an error.
+// The main function. It performs the command that the command line names and returns an exit status, even after an
+// error.
 #include "cli/command_line.hpp"
 #include "cli/completion.hpp"
 #include "cli/display.hpp"
@@ -18,7 +19,7 @@
 namespace palpate::cli {
 namespace {
 
-/// Prints the completions of the last one of `words`, one per line.
+/// Prints the completions of the last of `words`, one per line.
 int print_completions(CommandLine& line, Program& program, std::vector<std::string> words) {
   if (words.empty()) words.emplace_back();
   for (const Completion& one : completions(line.app(), program, words)) {
@@ -47,7 +48,8 @@ int run_main(int argc, char** argv) {
   Program program{{host, installation, {argv, argv + argc}, &interrupted}, composer};
   if (completes) return print_completions(line, program, {argv + 2, argv + argc});
   if (const std::optional<int> status = line.parse(argc, argv)) return *status;
-  std::signal(SIGCHLD, SIG_DFL);  // If the parent set SIG_IGN, the exit statuses of child processes would be lost.
+  // With SIG_IGN, which a parent may have set, exit statuses of child processes would be lost.
+  std::signal(SIGCHLD, SIG_DFL);
   if (!needs_only) {
     math::choose_instructions();  // An invalid PALPATE_INSTRUCTIONS is reported here, before the command begins.
     return line.perform(program);
@@ -68,7 +70,7 @@ int exit_status(Error::Kind kind) {
 int main(int argc, char** argv) {
   palpate::cli::occupy_standard_files();
   palpate::cli::follow_parent();
-  std::signal(SIGPIPE, SIG_DFL);  // Python ignores this signal, and a program that Python executes inherits this.
+  std::signal(SIGPIPE, SIG_DFL);  // Python ignores this signal, and programs that Python starts inherit the setting.
   std::signal(SIGXFSZ, SIG_IGN);  // A write beyond the limit of file sizes becomes an error, as on a full disk.
   int status = palpate::cli::kFailed;
   try {

@@ -79,7 +79,8 @@ void create_python(const Installation& installation, const NewArguments& argumen
     copy_starter(arguments, starters / "python" / file,
                  boost::replace_all_copy(std::string(file), "starter", arguments.name));
   }
-  // The test imports this module itself, because `palpate` does not start the test.
+  // The test needs its own copy of this module, because `palpate` does not start the test and cannot provide the
+  // module.
   const std::string module = "palpate_acquisition.py";
   copy_starter(arguments, installation.plugins / "python" / module, module);
   const fs::path script = installation.configs.parent_path() / "palpate";

@@ -16,7 +16,7 @@ namespace palpate::cli {
 namespace {
 
 constexpr int kUnknown = -1;
-/// The errno of the first failed write to stdout; 0 if none failed.
+/// The errno of the first failed write to stdout; 0 if no write failed.
 int failure = 0;
 bool outlives = false;
 std::string record;
@@ -30,7 +30,7 @@ void note_failure() {
 void occupy_standard_files() {
   for (const int number : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
     if (::fcntl(number, F_GETFD) >= 0) continue;
-    // The new file gets the lowest free number, which is this one.
+    // open() returns the lowest free descriptor, which is `number`.
     ::open(number == STDIN_FILENO ? "/dev/full" : "/dev/null", number == STDIN_FILENO ? O_WRONLY : O_RDONLY);
   }
 }

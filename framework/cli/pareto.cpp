@@ -27,7 +27,7 @@ std::string title_of(const std::string& name, const Pareto& pareto) {
                      seeds_words(pareto));
 }
 
-/// Writes the picture and the table next to results.csv.
+/// Writes the picture and the table into the folder of results.csv.
 void write_files(const Sweep& sweep, const Pareto& pareto, const std::string& name, const std::string& where,
                  const std::optional<double>& bound, const Setting* chosen) {
   const fs::path stem = sweep.directory / fmt::format("pareto_{}_{}{}", slug(pareto.cost.name), slug(pareto.error.name),
@@ -45,12 +45,13 @@ void write_files(const Sweep& sweep, const Pareto& pareto, const std::string& na
   }
 }
 
-/// Prints the config of the first job of a setting, below a comment with the reason for this choice. The expectations
+/// Prints the config of the first job of a setting, after a comment with the reason for this choice. The expectations
 /// of the sweep are left out, because they do not apply to a single run.
 void print_config(const Sweep& sweep, const Pareto& pareto, const Setting& chosen, double bound) {
   Tree config = read_run_config(job_directory(sweep, sweep.jobs[chosen.first_job]));
   config.erase("expect");
-  // The config gets a new name. Then runs/NAME/* stays a single directory, as the examples of other commands assume.
+  // With a new name, the run gets a folder runs/NAME of its own. The examples of other commands assume that runs/NAME/*
+  // is a single directory.
   Tree& name = config.at("name");
   name = Tree::scalar(name.text + "_best", true);
   const char* const kept =

@@ -7,7 +7,7 @@
 namespace palpate::cli {
 
 struct ParetoArguments {
-  std::vector<std::string> records;  ///< words that name sweeps and runs, for find_records(); these count as one sweep
+  std::vector<std::string> records;  ///< sweeps and runs, as find_records() takes them; they are pooled into one sweep
   std::string cost;
   std::string error;
   std::optional<std::string> within;

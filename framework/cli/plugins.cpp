@@ -57,7 +57,7 @@ int plugins(Program& program, const PluginsArguments& arguments) {
     throw Error("", fmt::format("there is no plugin kind '{}'", kind), suggestion(kind, kinds));
   }
   const std::vector<PluginListing> rows = program.host.list(kind, name);
-  // For a plugin that does not exist, describe() throws an error with the most similar names.
+  // For a plugin that does not exist, describe() throws an error that suggests similar names.
   if (!name.empty() && rows.empty())
     describe_fields([&](Fields& fields) { program.host.describe(kind, name, fields); });
 

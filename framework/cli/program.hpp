@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Parts that all commands share: exit statuses, the plugins and configs of the program, and delegation of commands.
-// `palpate` delegates a command that only `palpate-whole` has.
+// Parts that all commands share: exit statuses, the plugins and configs of the program, and delegation: `palpate`
+// passes commands that only `palpate-whole` has to that program.
 #pragma once
 
 #include "config/compose.hpp"
@@ -33,9 +33,8 @@ Result call_in_whole(Result (*function)(Program&, Parameters...), Program& progr
   return function(program, arguments...);
 }
 
-/// Declares a function that only `palpate-whole` defines. The first run in a clone needs only `palpate`. It therefore
-/// does not wait for the compilation of sweeps and pages. The linker sets the address of the function to null in
-/// `palpate`.
+/// Declares a function that only `palpate-whole` defines. In `palpate`, the linker sets the address of the function to
+/// null. The first run in a clone needs only `palpate`, so it does not wait for the compilation of sweeps and pages.
 #define PALPATE_WHOLE [[gnu::weak]]
 
 /// Throws Error if `directory` is a sweep. Commands that read one run call this function. The hint of the error names

@@ -55,14 +55,14 @@ void show(const Figures& figures) {
   for (const fs::path& picture : figures.pictures) print_out("{}\n", picture.string());
 }
 
-/// Throws Error for a run from any side. `what` is the reason.
+/// Throws Error for a run that taps from any side. `what` is the reason in the message.
 void check_from_above(const RecordedRun& recording, const std::string& what) {
   if (!recording.is_any_side()) return;
   throw Error(recording.directory.string(), "is a run from any side, but " + what,
               "use 'palpate report' without options for its page");
 }
 
-/// Warns on stderr if the truth of the scene is lost. The errors are then those of the record.
+/// Warns on stderr if the true surface can no longer be computed. The page then shows the errors in the record.
 void warn_lost(const History& history) {
   if (history.truth_lost) print_message(truth_lost_words(*history.truth_lost) + "\n");
 }

@@ -38,7 +38,7 @@ struct RunArguments {
   std::string junit;
 };
 
-/// Prints the files of the groups, and each value with the place where it was set. Also prints the options that were
+/// Prints the group files, and each value with its origin, such as file:line:column. Also prints the options that were
 /// dropped because a later group chose another type.
 void print_origins(const std::vector<Composer::Group>& groups, const ResolvedConfig& config) {
   for (const Composer::Group& one : groups) print_out("# {} {}: {}\n", one.path, one.name, one.file.string());
@@ -56,8 +56,8 @@ void print_origins(const std::vector<Composer::Group>& groups, const ResolvedCon
   }
 }
 
-/// If `trouble` is about an override with several values for a key (which only `palpate sweep` accepts), returns a
-/// clearer error. Otherwise returns `trouble`.
+/// Returns a clearer error if `trouble` is about an override that gives a key several values, which only `palpate
+/// sweep` accepts. Otherwise returns `trouble`.
 Error axis_error(const std::vector<Override>& overrides, const std::vector<std::string>& texts, const Error& trouble) {
   const auto mentions = [&](const std::string& text) { return trouble.reason().find(text) != std::string::npos; };
   for (std::size_t i = 0; i < texts.size(); ++i) {
@@ -95,7 +95,7 @@ void print_plan(const ResolvedConfig& config, const std::filesystem::path& direc
             status.state == RunStatus::State::absent ? "not run yet" : state_name(status.state));
 }
 
-/// If the first run was started from a terminal, prints the command that builds the remaining parts.
+/// Prints the command that builds all parts, if palpate-whole is not built yet and stderr is a terminal.
 void offer_full_build(const Program& program) {
   if (::isatty(STDERR_FILENO) == 0 || is_there(program.installation.whole)) return;
   print_message(

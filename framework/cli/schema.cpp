@@ -36,8 +36,8 @@ Tree of_type(const char* type, const char* description = nullptr) {
 Tree any_of(std::vector<Tree> schemas) { return Tree::map({{"anyOf", Tree::list(std::move(schemas))}}); }
 
 /// Returns the schema of a plugin kind. A value is either the name of a plugin, or the options of one of the plugins.
-/// The type is not required, because a group in `defaults` may set it. The options in `beside` are left out, because a
-/// config has them next to a plugin of this kind (Field::with_beside()).
+/// The type is not required, because a group in `defaults` may set it. The options in `beside` are left out, because
+/// they have their own keys next to the key of the plugin (Field::with_beside()).
 Tree kind_schema(const PluginHost& host, const std::string& kind, const std::set<std::string>& beside) {
   std::vector<Tree> any{of_type("string")};
   any.front().at("description") = Tree::quote("name of a group file or of a plugin");
@@ -52,8 +52,8 @@ Tree kind_schema(const PluginHost& host, const std::string& kind, const std::set
   return any_of(std::move(any));
 }
 
-/// Returns the schema of a key that is next to a plugin of this kind. A value is either the name of a group file, or
-/// the options of one of the plugins.
+/// Returns the schema of an option with its own key next to the key of its plugin (Field::with_beside()). A value is
+/// either the name of a group file, or the options of one of the plugins.
 Tree beside_schema(const PluginHost& host, const std::string& kind, const std::string& option) {
   std::vector<Tree> any{of_type("string")};
   any.front().at("description") = Tree::quote("name of a group file");
@@ -67,8 +67,8 @@ Tree beside_schema(const PluginHost& host, const std::string& kind, const std::s
   return any_of(std::move(any));
 }
 
-/// Fills the schema of `expect:`. Its keys are fields of the summary and statistics of them, and its values are one or
-/// more comparisons.
+/// Fills the schema of `expect:`. A key is a field of the summary or a statistic of a field, such as
+/// median(object_taps). A value is one comparison or a list of comparisons.
 void expect_schema(Tree& expect) {
   std::string fields = kFailedRuns;
   for (const RecordField& field : summary_fields()) fields += "|" + field.name;
@@ -80,7 +80,7 @@ void expect_schema(Tree& expect) {
   expect = any_of({of_type("string"), expect});
 }
 
-/// Fills the schema of `defaults:`, which has groups with their names.
+/// Fills the schema of `defaults:`, a list of maps with one group and its name, such as `kernel: rbf`.
 void defaults_schema(Tree& defaults) {
   defaults.at("type") = Tree::quote("array");
   Tree& item = defaults.at("items") = of_type("object");

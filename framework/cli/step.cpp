@@ -17,7 +17,8 @@
 namespace palpate::cli {
 namespace {
 
-/// Longest delay of the reaction to a signal. If another thread handles the signal, poll() does not return early.
+/// Longest delay between a signal and the reaction to it. If another thread handles the signal, poll() does not return
+/// early.
 constexpr int kPollMilliseconds = 100;
 
 std::string who_chose(const TapRecord& tap) {
@@ -62,7 +63,8 @@ bool Step::permits(const TapRecord& tap, const Experiment& experiment) {
   }
 }
 
-/// Returns the next line without its line end. Returns nullopt after the end of input and after an interrupt.
+/// Returns the next line of stdin without its line end. Returns nullopt after the end of the input and after an
+/// interrupt.
 std::optional<std::string> Step::read_line() const {
   std::string line;
   while (line.empty() || line.back() != '\n') {

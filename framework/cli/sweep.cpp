@@ -43,8 +43,7 @@ struct SweepExecution {
   const LaunchArguments& launch;
   std::vector<std::size_t> only;  ///< numbers of the jobs to run; if empty, all jobs
   bool one_at_a_time = false;     ///< whether a backend moves something that exists only once, such as an arm
-  /// If `palpate sweep` starts the sweep, this is the config of the first job with the present expectations. It is
-  /// nullopt for `palpate resume`.
+  /// For `palpate sweep`, the config of the first job with the current expectations; nullopt for `palpate resume`.
   std::optional<ResolvedConfig> first = std::nullopt;
 };
 
@@ -65,8 +64,8 @@ int finish_part(const Sweep& sweep, const JobStates& end, bool interrupted, bool
   return end.open.empty() ? kDone : kBusy;
 }
 
-/// Returns the config of a job. Returns nullopt if the config is damaged. Such a job fails when it is run, and then
-/// reports the reason.
+/// Returns the config of a job. Returns nullopt if the config is damaged. A job with a damaged config fails when it is
+/// run, and then reports the reason.
 std::optional<ResolvedConfig> readable_config(const SweepExecution& execution, std::size_t job) {
   std::optional<ResolvedConfig> config;
   catch_error(
@@ -74,12 +73,13 @@ std::optional<ResolvedConfig> readable_config(const SweepExecution& execution, s
   return config;
 }
 
-/// State of the jobs after the launch. `blocked`: a job could not begin, for a reason that holds for all jobs. The
-/// reason was printed on stderr.
+/// State of the jobs after the launch. `ended_unrecorded`: all jobs have ended, but some ends or files could not be
+/// recorded. `blocked`: a job could not begin, for a reason that applies to all jobs and was printed on stderr.
 enum class Launched { submitted, ended, ended_unrecorded, blocked };
 
-/// Returns the maximum number of initial taps of a job; nullopt if it depends on a camera's view. With a search, and
-/// from any side, all taps of a run may be initial taps. `result`: result of the job.
+/// Returns the maximum number of initial taps of a job; nullopt if the number depends on a camera's view. All taps of a
+/// run may be initial taps if the run begins with a search or taps from any side. `result`: the job's row of
+/// results.csv.
 std::optional<int> initial_taps_of(const ExperimentOptions& options, const Row& result) {
   if (!belief_option(options, "view").empty()) return std::nullopt;
   const bool any_side = result.find("no_contact_taps") != nullptr;
@@ -129,7 +129,7 @@ LaunchOptions launch_options(const SweepExecution& execution) {
           launch.jobs_per_task.value_or(1)};
 }
 
-/// Prints the commands that follow, continue and stop the jobs on a cluster.
+/// Prints the commands that show, resume and stop the jobs on a cluster.
 void print_next_commands(const SweepExecution& execution, const Launcher& launcher) {
   const std::string directory = shell_word(std::filesystem::absolute(execution.sweep.directory).string());
   print_out("watch progress with: palpate status {}\n", directory);
@@ -180,7 +180,8 @@ std::vector<std::size_t> jobs_not_done(const JobStates& standing) {
   return out;
 }
 
-/// Sets `one_at_a_time`. Without --force, throws Error if another build started one of these jobs.
+/// Sets `one_at_a_time` if a config requires it. Without --force, throws Error if another build started one of these
+/// jobs.
 void check_builds(SweepExecution& execution, const std::vector<std::size_t>& jobs) {
   for (const std::size_t job : jobs) {
     const std::filesystem::path directory = job_directory(execution.sweep, execution.sweep.jobs[job]);
@@ -193,12 +194,12 @@ void check_builds(SweepExecution& execution, const std::vector<std::size_t>& job
   }
 }
 
-/// Runs the open jobs, prints the result and checks the expectations. Returns the exit status.
+/// Runs the jobs that have not ended, prints the result and checks the expectations. Returns the exit status.
 int execute_sweep(const SweepExecution& execution, JobStates begun) {
   const Sweep& sweep = execution.sweep;
   check_locks(sweep.directory);
   const bool whole = execution.only.empty();
-  // The node that runs a part of the jobs may mount the folder in a different way than the node that submitted them.
+  // A node that runs a part of the jobs may mount the folder with other options than the node that submitted the jobs.
   if (is_on_cluster(execution) || !whole) check_shared_locks(sweep.directory);
   listen_for_interrupts();
   outlive_reader();
@@ -211,8 +212,8 @@ int execute_sweep(const SweepExecution& execution, JobStates begun) {
   if (execution.launch.watch) start_watcher(execution.program, sweep.directory);
   const Launched launched = launch_open(execution, begun);
   if (launched == Launched::submitted) return kDone;
-  // Missing files are not checked here. `execute_jobs` has reported them, and for a job of another build they may be
-  // lost for good.
+  // Missing files of ended jobs are not checked here. execute_jobs() has reported them, and this build may be unable to
+  // restore the files of a job of another build.
   const JobStates end = read_job_states(sweep, jobs, JobCheck::nothing);
   const bool interrupted = execution.program.interrupted->load();
   if (whole) return finish_whole(execution, end, interrupted, launched);
@@ -252,7 +253,7 @@ const LauncherType& checked_launcher(const LaunchArguments& launch) {
   return out;
 }
 
-/// Throws Error if a Python program would have to make the taps of the sweep.
+/// Throws Error if the taps of the sweep are made by a Python program (backend `caller`).
 void check_taps_are_own(const ResolvedConfig& config, const std::string& place) {
   if (config.options.backend.type != kCaller) return;
   throw Error(place, "the taps of this sweep are made by the caller's own program, not by palpate",
@@ -268,7 +269,7 @@ std::size_t jobs_of_sweep(Program& program, const std::string& config) {
 int sweep(Program& program, const SweepArguments& arguments) {
   check_launch(arguments.launch);
   const LauncherType& launcher = checked_launcher(arguments.launch);
-  // This check comes first, because a sweep that no scheduler can run must not be created.
+  // This check comes before the creation of the sweep, because a sweep that no scheduler can run must not be created.
   if (launcher.check_installed != nullptr && !arguments.list) launcher.check_installed();
   bool one_at_a_time = false;
   std::optional<ResolvedConfig> first;
@@ -295,7 +296,7 @@ int sweep(Program& program, const SweepArguments& arguments) {
   const bool is_new = draft->publish(*plan);
   const std::filesystem::path directory = plan->sweep.directory;
   draft.reset();
-  plan.reset();  // Otherwise each child process would copy the memory of the planning.
+  plan.reset();  // Otherwise each child process would copy the memory of the plan.
   const Sweep planned = read_sweep(directory);
   SweepExecution execution{program, planned, {}, arguments.launch, {}, one_at_a_time, std::move(first)};
   if (!is_new) check_builds(execution, jobs_of(execution));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Arguments of `palpate sweep`, and functions with which other commands handle sweeps.
+// Arguments of `palpate sweep`, and functions about sweeps that other commands call.
 #pragma once
 
 #include "cli/command_line.hpp"

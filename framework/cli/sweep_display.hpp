@@ -16,8 +16,8 @@
 namespace palpate::cli {
 
 /// Prints the progress of a sweep on stderr: numbers of done, running and failed jobs, rate, and remaining time. On a
-/// terminal, one line is updated in place. Elsewhere, a line is printed per tenth of the jobs. A last line follows if
-/// the line before still shows running jobs. If is_followed() is true, each state has a separate line.
+/// terminal, one line is updated in place. Elsewhere, a line is printed per tenth of the jobs. At the end, another line
+/// follows if the previous line shows running jobs. If is_followed() is true, each update is a separate line.
 class SweepLine {
  public:
   explicit SweepLine(bool quiet);
@@ -33,19 +33,19 @@ class SweepLine {
 };
 
 /// Reads the sweeps and runs that `words` name, as one sweep (see read_pooled() and find_records()). Prints notes about
-/// them on stderr. Throws Error.
+/// the pooling on stderr. Throws Error.
 Sweep read_records(const std::vector<std::string>& words, const std::vector<std::string>& by);
 
-/// Calls `work` for each of these jobs in child processes and shows the progress. At most `workers` processes run at a
+/// Calls `work` for each of `jobs` in child processes and shows the progress. At most `workers` processes run at a
 /// time; the default is the number of cores. Returns false after an interrupt. Finished work is kept. Throws Error.
 bool compute_jobs(const Program& program, const std::vector<std::size_t>& jobs, std::optional<int> workers,
                   const std::function<void(std::size_t job)>& work);
 
-/// Returns the suffix of the name of a file about the jobs that satisfy a condition, for example "_where_1f2e3d".
+/// Returns a suffix for names of files about the jobs that satisfy `where`: "_where_" and a hash of the condition.
 /// Returns "" if there is no condition.
 std::string where_suffix(const std::string& where);
 
-/// Returns the values of the swept keys of a job, with `gap` before each value, for example " taps=17 seed=3".
+/// Returns the swept keys of a job with their values, with `gap` before each key, for example " taps=17 seed=3".
 std::string values_text(const Sweep& sweep, const Job& job, const char* gap);
 
 /// Prints one line per failed job with its keys and its reason. The number of lines is limited.

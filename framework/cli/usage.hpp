@@ -20,7 +20,7 @@ std::vector<const CLI::Option*> arguments_of(const CLI::App& command);
 /// Returns the name of an option's value in the help, for example FOLDER, N or KEY=VALUE. Returns "" for a flag.
 std::string value_of(const CLI::Option& option);
 
-/// Returns the values that an option accepts. Returns an empty list if they are not listed.
+/// Returns the values that an option accepts; an empty list if the option does not list its values.
 std::vector<std::string> choices_of(const CLI::Option& option);
 
 /// Returns the description of `option`, with its limits, its default and its relations to other options.

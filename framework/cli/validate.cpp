@@ -20,8 +20,8 @@ struct ValidateArguments {
 
 int validate(Program& program, const ValidateArguments& arguments) {
   int bad = 0;
-  // All lines are printed at the end. For a sweep, this process may execute palpate-whole, which validates all files
-  // again.
+  // All lines are printed at the end. For a sweep, this process may be replaced by palpate-whole, which validates all
+  // files again and prints all lines.
   std::vector<std::pair<bool, std::string>> said;  // true for a valid config
   for (const std::string& file : arguments.configs) {
     // All files are checked, so that one command reports every invalid file.
@@ -32,7 +32,7 @@ int validate(Program& program, const ValidateArguments& arguments) {
             true, fmt::format("{}: valid, a sweep of {} jobs\n", file, call_in_whole(jobs_of_sweep, program, file)));
       } else {
         const ResolvedConfig config = resolve_experiment(tree, program.host);
-        // Only the construction of the scene detects a broken mesh, and objects that do not fit into the area.
+        // Broken meshes, and objects that do not fit into the area, are detected only when the scene is built.
         build_scene(config.options.scene, static_cast<std::uint64_t>(config.options.seed), program.host);
         for (const std::string& line : partly_given_sizes(config.tree, config.notes))
           said.emplace_back(false, line + "\n");

@@ -15,7 +15,8 @@ namespace palpate::cli {
 int watch(Program& program, const WatchArguments& arguments) {
   constexpr int kIdleSeconds = 120;
   // This process computes the watched run a second time, so the run itself has priority. The page of a sweep needs
-  // little time. It gets a higher priority than the page of a run, because the jobs occupy all cores.
+  // little computing time. It has a higher priority than the page of a run, because the jobs of the sweep occupy all
+  // cores.
   ::setpriority(PRIO_PROCESS, 0, is_sweep(arguments.directory) ? 10 : 19);
   Site site(program, arguments.directory);
   Server server(site, {arguments.bind, arguments.port, arguments.until_left ? kIdleSeconds : 0});

@@ -9,7 +9,7 @@ namespace palpate::cli {
 struct WatchArguments {
   std::string directory;
   std::string bind = "127.0.0.1";
-  int port = 0;  ///< 0 stands for any free port
+  int port = 0;  ///< 0: any free port
   bool until_left = false;
 };
 PALPATE_WHOLE int watch(Program& program, const WatchArguments& arguments);

@@ -17,7 +17,7 @@
 namespace palpate::cli {
 namespace {
 
-/// Returns the first line. If it does not arrive within half a minute, returns all text that has arrived.
+/// Returns the first line. If half a minute passes without new text, returns the text that has arrived.
 std::string first_line(const Descriptor& from) {
   constexpr int kMostWait = 30'000;
   std::string out;
@@ -40,8 +40,8 @@ void start_watcher(const palpate::cli::Program& program, const std::filesystem::
   std::optional<Pipe> pipe = open_pipe();
   const Descriptor nothing = above_standard(::open("/dev/null", O_RDONLY | O_CLOEXEC));
   palpate::Program watch{{whole, "watch", directory.string(), "--until-left"}, whole};
-  // The watcher must not inherit open files. Otherwise a process that reads the output of this program would wait for
-  // the end of the watcher.
+  // The watcher must not inherit open files. Otherwise a process that reads the output of this program until its end
+  // would also wait for the end of the watcher.
   const bool started =
       pipe && nothing && spawn(watch, {nothing.number(), pipe->to_write.number(), pipe->to_write.number()}) > 0;
   if (!started) said = fmt::format("{}: {}", whole, errno == ENOENT ? "is not built" : std::strerror(errno));

@@ -9,8 +9,8 @@
 
 namespace palpate::cli {
 
-/// Starts `palpate watch DIRECTORY --until-left`. Prints the address of the page on stderr. If there is no page, prints
-/// the reason instead, which does not count as an error. The started process ignores the signals of the terminal and
+/// Starts `palpate watch DIRECTORY --until-left`. Prints the address of the page on stderr. If the page cannot be
+/// served, prints the reason instead and does not fail. The started process ignores the signals of the terminal and
 /// outlives this process.
 void start_watcher(const Program& program, const std::filesystem::path& directory);
 

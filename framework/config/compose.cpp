@@ -19,7 +19,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Number of layers of a group. Its own content is on the highest layer, and the groups that it builds on are below.
+/// Number of layers of a group. The group's own content is on the highest layer, and the groups on which it builds are
+/// on lower layers.
 constexpr Layer kLayersOfGroup = 16;
 
 [[noreturn]] void refuse_depth(const SourceLocation& place) {
@@ -27,8 +28,8 @@ constexpr Layer kLayersOfGroup = 16;
               "merge them into fewer files");
 }
 
-/// Appends a group to `chain`, the groups that led from the config to this one. Throws Error for an invalid name, and
-/// for a group that is already in the chain.
+/// Appends a group to `chain`, which contains the groups that led from the config to this group. Throws Error for an
+/// invalid name, for a group that is already in the chain, and for a chain of more than kLayersOfGroup groups.
 void add_link(const std::string& group, const std::string& name, const SourceLocation& place,
               std::vector<std::string>& chain) {
   if (!is_name(name))
@@ -40,8 +41,8 @@ void add_link(const std::string& group, const std::string& name, const SourceLoc
   if (chain.size() > static_cast<std::size_t>(kLayersOfGroup)) refuse_depth(place);
 }
 
-/// Throws Error if a group has more layers than kLayersOfGroup. The length of the chain does not show this, because a
-/// base may have been read before, in a shorter chain.
+/// Throws Error if a group has more than kLayersOfGroup layers. The length of the chain does not suffice for this
+/// check, because a base may have been read earlier, with a shorter chain.
 void check_layers(const Tree& content, const SourceLocation& place) {
   Layer lowest = 0;
   for_all(content, [&](const Tree& one) { lowest = std::min(lowest, one.layer); });
@@ -53,7 +54,7 @@ void drop(Container& from, const Holds& holds) {
   from.erase(std::remove_if(from.begin(), from.end(), holds), from.end());
 }
 
-/// Returns the map of a plugin that is chosen by its name alone.
+/// Returns the map `{type: name}` of a plugin that is chosen only by its name.
 Tree typed(const Tree& name) {
   Tree out = Tree::map({{"type", name}});
   out.place = name.place;
@@ -61,7 +62,7 @@ Tree typed(const Tree& name) {
   return out;
 }
 
-/// Moves the types of a chosen group, and of the groups within it, to `layer`.
+/// Sets the layer of the key `type` in a chosen group, and in the groups within it, to `layer`.
 void set_layer_of_type(Tree& content, Layer layer, const SourceLocation& place) {
   for (Tree::Entry& entry : content.entries) {
     if (entry.value.is_map()) set_layer_of_type(entry.value, layer, place);
@@ -71,7 +72,7 @@ void set_layer_of_type(Tree& content, Layer layer, const SourceLocation& place) 
   }
 }
 
-/// Completes groups that inherit from another key (Field::inherits()): a config then needs to set only the differences.
+/// Completes groups that inherit from another key (Field::inherits()). So a config needs to set only the differences.
 void inherit_shared(Tree& tree, const ConfigKeys& keys) {
   for (const auto& [heir, from] : keys.heirs()) {
     const Tree* own = tree.find_path(heir);
@@ -92,8 +93,7 @@ void mark_complete(Tree& config) {
   const Tree* complete = config.find("complete");
   if (complete == nullptr) return;
   std::int64_t number = 0;
-  catch_error(
-      [&] { number = read_integer(*complete, "complete"); });  // an invalid value is reported later, by resolve()
+  catch_error([&] { number = read_integer(*complete, "complete"); });  // resolve() reports an invalid value later
   if (number > kRecordVersion) {
     throw Error(
         complete->place.text(),
@@ -193,7 +193,7 @@ Tree Composer::base_content(const std::string& group, const Tree& name, const fs
   const std::array<std::string, 3> key{group, name.text, beside.string()};
   if (const auto known = bases_.find(key); known != bases_.end()) return known->second;
   Tree content = group_content(group, name.text, name.place, beside, chain);
-  // A plugin without a file is not cached, because its place is that of its name, which differs between uses.
+  // A plugin without a file is not cached, because its source location is that of its name, which differs between uses.
   if (!group_files_.find(group, name.text, name.place, beside).empty()) bases_.emplace(key, content);
   return content;
 }
@@ -202,7 +202,8 @@ std::vector<Composer::Choice> Composer::take_defaults(Tree& own) const {
   std::vector<Choice> choices;
   const Tree* defaults = own.find("defaults");
   if (defaults == nullptr) {
-    // Report a misspelt `defaults` first; otherwise the first error would be about a group that the list chooses.
+    // A misspelt `defaults` is reported first. Otherwise the first error would be about a missing group that the list
+    // `defaults` chooses.
     for (const Tree::Entry& entry : own.entries) {
       if (nearest(entry.key, {"defaults"}).empty()) continue;
       throw Error(entry.place.text(), fmt::format("unknown option '{}'", entry.key), "did you mean 'defaults'?");
@@ -254,8 +255,9 @@ Tree Composer::take_group(const Choice& choice, const fs::path& beside, Layer la
 }
 
 void Composer::lay_groups(Tree& tree, const std::vector<Choice>& choices, const fs::path& beside, Layer& layer) {
-  // A group may contain options for the key next to it: a backend may contain a motion. These options are ignored if an
-  // override chooses that key, or if the config that chooses the group also chooses that key.
+  // A group file may also set options of the sibling key: a backend file may set options of `motion`. These options are
+  // ignored if an override chooses the sibling key, or if the config that chooses the group also chooses the sibling
+  // key.
   const auto is_chosen = [&](const std::string& key, Layer since) {
     return std::any_of(choices.begin(), choices.end(), [&](const Choice& one) {
       return one.path == key && (one.value.layer >= kSweepLayer || since < kSweepLayer);
@@ -277,7 +279,8 @@ void Composer::lay_groups(Tree& tree, const std::vector<Choice>& choices, const 
     if (slot.place.line == 0) slot.place = content.place;
     slot.merge(content);
   };
-  // A part (scene.effects) comes after all whole groups (scene), because the part replaces their content at its path.
+  // A part of a group (scene.effects) is merged after all whole groups (scene), because the part replaces their content
+  // at its path.
   for (const bool parts : {false, true}) {
     for (const Choice& choice : choices) {
       if (keys_.is_part(choice.path) == parts) lay(choice);

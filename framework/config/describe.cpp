@@ -134,7 +134,8 @@ void append_text(std::vector<std::vector<std::string>>& lines, const std::vector
   }
 }
 
-/// Returns a pattern for quantities such as "1.7 cm", with which an editor can check a value while the user types.
+/// Returns a regular expression for quantities such as "1.7 cm". With this pattern, an editor can check a value while
+/// the user types.
 std::string quantity_pattern(Unit unit) {
   return fmt::format("^[-+]?([0-9]+\\.?[0-9]*|\\.[0-9]+)([eE][-+]?[0-9]+)? *({})$", fmt::join(unit_names(unit), "|"));
 }
@@ -149,14 +150,15 @@ Tree plugin_schema(const std::string& kind) { return Tree::map({{"$ref", Tree::q
 
 Tree array_schema(Tree items) { return Tree::map({{"type", Tree::quote("array")}, {"items", std::move(items)}}); }
 
-/// Returns the schema of a row of `field`, including the number of values per row.
+/// Returns the schema of one row of values of `field`, including the number of values.
 Tree row_schema(const FieldDescription& field) {
   Tree out = array_schema(number_schema(field.unit));
   for (const char* bound : {"minItems", "maxItems"}) out.at(bound) = Tree::scalar(std::to_string(field.count));
   return out;
 }
 
-/// Returns the schema of a group whose type is a choice: one alternative per case, with the fields of that case only.
+/// Returns the schema of a group of fields. If a field is a choice with fields per case, the schema has one alternative
+/// per case, which allows only the fields of this case.
 Tree group_schema(const std::vector<FieldDescription>& fields) {
   const auto typed = std::find_if(fields.begin(), fields.end(), [](const FieldDescription& field) {
     return std::any_of(field.cases.begin(), field.cases.end(), [](const auto& one) { return !one.fields.empty(); });
@@ -183,7 +185,7 @@ Tree section_schema(const FieldDescription& field) {
   return Tree::map({{"anyOf", Tree::list({field.group ? name : none, std::move(group)})}});
 }
 
-/// Returns a schema that also accepts a range for any number, such as `uniform(3 cm, 8 cm)`.
+/// Returns a schema that accepts a range such as `uniform(3 cm, 8 cm)` in place of any number of `schema`.
 Tree or_drawn(Tree schema) {
   const Tree* type = schema.find("type");
   if (schema.find("pattern") != nullptr || (type != nullptr && (type->text == "number" || type->text == "integer"))) {
@@ -243,7 +245,7 @@ Tree value_schema(const FieldDescription& field) {
       if (field.adopted) return Tree::map({{"type", Tree::quote("string")}});
       break;
     case Type::plugins: {
-      // An item of a list cannot be chosen by a group's name, so it must be a map with a type.
+      // An item of a list cannot be the name of a group file, so it must be a map with a type.
       const Tree typed = Tree::map({{"type", Tree::quote("object")}, {"required", Tree::list({Tree::quote("type")})}});
       return array_schema(Tree::map({{"allOf", Tree::list({plugin_schema(field.kind), typed})}}));
     }

@@ -12,7 +12,7 @@
 
 namespace palpate {
 
-/// The description of one field of an option list.
+/// The description of one field of an options struct.
 struct FieldDescription {
   enum class Type { real, reals, table, integer, flag, text, choice, section, sections, plugin, plugins };
   struct CaseDescription;
@@ -20,20 +20,20 @@ struct FieldDescription {
   std::string name;
   Type type = Type::real;
   Unit unit = Unit::none;
-  std::string range;          ///< for example "> 0 m" or "0 .. 1"; "": no limits
-  std::string default_value;  ///< text as in a config; "": no default
+  std::string range;          ///< for example "> 0 m" or "0 .. 1"; "" for no limits
+  std::string default_value;  ///< text as in a config; "" for no default
   std::string meaning;
   std::string source;
   bool required = false;
-  bool optional = false;  ///< a `section` that is absent by default
+  bool optional = false;  ///< whether a `section` is absent by default
   bool group = false;     ///< see Field::group()
-  bool adopted = false;   ///< see Fields::adopt(): the options of the plugin, which are unknown here, follow the field
+  bool adopted = false;   ///< whether unknown options of a plugin follow the field: see Fields::adopt()
   bool drawable = false;  ///< see Field::drawable()
   std::string heir_of;    ///< see Field::inherits(); "": none
   Owner owner = Owner::unsaid;
   std::string beside;                    ///< see Field::with_beside(); "": none
-  std::string neutral;                   ///< see Field::neutral(); as in a config, "none": absent, "": no neutral value
-  std::size_t count = 0;                 ///< number of values of `reals`, or of a row of `table`
+  std::string neutral;                   ///< see Field::neutral(); "none" for absent, "" for no neutral value
+  std::size_t count = 0;                 ///< number of values of `reals`, or of each row of a `table`
   std::string kind;                      ///< kind of a `plugin`
   std::vector<CaseDescription> cases;    ///< cases of a `choice`
   std::vector<FieldDescription> fields;  ///< fields of a `section` or of `sections`
@@ -48,28 +48,28 @@ struct FieldDescription::CaseDescription {
   std::vector<FieldDescription> fields;
 };
 
-/// Describes a key that is not an option.
+/// Describes the key of a field, without its type, default and nested fields.
 FieldDescription describe_key(const Field& field);
 
-/// Describes the option next to the plugin at `field` (Field::with_beside()), without its fields.
+/// Describes the sibling key of the plugin at `field` (Field::with_beside()), without its fields.
 FieldDescription describe_beside(const FieldDescription& field);
 
 /// Returns all plugins of a kind, with their options.
 using PluginCases = std::function<std::vector<FieldDescription::CaseDescription>(const std::string& kind)>;
 
-/// Describes the fields that `list` lists. The plugins of an adopted field (Fields::adopt()) are its cases, if
-/// `plugins` returns any; otherwise only their kind is described.
+/// Describes the fields that `list` lists. An adopted field (Fields::adopt()) has one case per plugin that `plugins`
+/// returns. If `plugins` returns none, only the kind of the plugins is described.
 std::vector<FieldDescription> describe_fields(const std::function<void(Fields&)>& list,
                                               const PluginCases& plugins = {});
 
-/// Returns a table with one line per field. Nested fields have the path as their name.
+/// Returns a text table with one line per field. Nested fields are indented.
 std::string describe_text(const std::vector<FieldDescription>& fields);
 
 /// Returns the descriptions for JSON: name, type, unit, range, default, meaning, source, required.
 Tree describe_tree(const std::vector<FieldDescription>& fields);
 
-/// Returns a JSON Schema of an object that allows exactly `fields`, or any further keys if a field is adopted. A plugin
-/// field refers to "#/definitions/<kind>".
+/// Returns a JSON Schema of an object that allows exactly the keys of `fields`. If a field is adopted, the object may
+/// also have any other keys. A plugin field refers to "#/definitions/<kind>".
 Tree schema_of(const std::vector<FieldDescription>& fields);
 
 }  // namespace palpate

@@ -11,12 +11,13 @@
 namespace palpate {
 namespace {
 
-/// Smaller numbers with a unit (in SI) are shown as 0, because they are rounding errors of coordinates.
+/// Numbers with a unit that are smaller than this bound (in SI units) are shown as 0, because they are rounding errors
+/// of coordinates.
 constexpr double kReadsAsZero = 1e-9;
 
 bool reads_as_zero(const std::string& text) { return text.find_first_of("123456789") == std::string::npos; }
 
-/// Returns the number of decimals of `digits` significant digits of `value`; negative for large values.
+/// Returns how many decimals `value` needs for `digits` significant digits; negative for large values.
 int decimals_for(double value, int digits) {
   return digits - 1 - static_cast<int>(std::floor(std::log10(std::abs(value))));
 }

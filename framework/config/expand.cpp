@@ -68,7 +68,7 @@ double as_decimal(double value) {
 std::vector<Tree> expand_range(const std::vector<Bound>& from, const Tree& tree, const std::string& key,
                                ValueCount& counted) {
   const double step = from.size() == 3 ? from[2].value : 1.0;
-  // Rounding errors must not include the end of a range: (1.3 - 1) / 0.1 is 3.0000000000000004.
+  // kRounding prevents rounding errors from including the end of a range: (1.3 - 1) / 0.1 is 3.0000000000000004.
   const double count = std::ceil((from[1].value - from[0].value) / step - kRounding);
   if (!(count >= 1.0)) refuse(tree, key, "has no value", "the end must lie beyond the start");
   if (count > static_cast<double>(kMaxValues)) refuse(tree, key, "has more than a million values", "use a wider step");
@@ -175,7 +175,7 @@ Axis parse_axis(const std::string& text, ValueCount& count) {
   Axis axis{whole.path, {}, Tree::list()};
   for (const std::string& part : parts) {
     const Override one = parse_override(whole.path + "=" + boost::trim_copy(part));
-    // Next to other values, a list is one value: at=[1cm,1cm],[2cm,2cm].
+    // If there are several parts, a part that is a list is one value: at=[1cm,1cm],[2cm,2cm].
     if (one.value.kind == Tree::Kind::list) {
       axis.values.push_back(one.value);
       continue;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Parses the values of swept keys (lists, `range` and `logspace`) and continuous ranges.
+// Parses the values of the keys that a sweep varies (lists, `range` and `logspace`), and continuous ranges.
 #pragma once
 
 #include "config/compose.hpp"
@@ -12,14 +12,14 @@
 
 namespace palpate {
 
-/// A swept key and its values.
+/// A key that a sweep varies, and its values.
 struct Axis {
   std::string key;  ///< dotted path
   std::vector<Tree> values;
-  Tree written;  ///< the text of the values, which can be parsed again
+  Tree written;  ///< the values as they were written; expand_values() can parse them again
 };
 
-/// A number of a range, with its unit as written.
+/// A number in the arguments of a range, with its unit as written.
 struct Bound {
   double value;
   std::string unit;  ///< "": none
@@ -39,29 +39,29 @@ std::optional<Call> parse_call(const Tree& value, const std::string& key, const 
 /// A continuous range: `uniform(a, b)`, or `log_uniform(a, b)`, which is uniform in the logarithm.
 struct ContinuousRange {
   bool logarithmic = false;
-  double first = 0.0;  ///< in `unit`; below `last`, and positive if logarithmic
+  double first = 0.0;  ///< first end, in `unit`; less than `last`; positive if logarithmic
   double last = 1.0;
   std::string unit;  ///< "": none
 
-  /// Returns the number at `share` (0 to 1) of the range.
+  /// Returns the number at the share `share` of the range: 0 is the first end, 1 the last.
   double at(double share) const;
 };
 
-/// Parses a continuous range. Returns nullopt for any other value. Throws Error, with `key`, for ends with different
-/// units or in the wrong order.
+/// Parses a continuous range. Returns nullopt for any other value. Throws Error, which names `key`, for ends with
+/// different units or in the wrong order.
 std::optional<ContinuousRange> parse_continuous(const Tree& value, const std::string& key);
 
 /// The hint of errors about continuous ranges.
 inline constexpr const char* kContinuousHint =
     "write uniform(0.1 mm, 1 mm) or log_uniform(1 cm, 10 cm), both ends with the same unit";
 
-/// Returns a number with its unit as text, at the place of `like`.
+/// Returns a scalar with the text of a number and its unit, and with the source location of `like`.
 Tree number(double value, const std::string& unit, const Tree& like);
 
-/// Counts the values of all axes before they are made, because a short text can stand for a million values.
+/// Counts the values of all axes before they are created, because a short text can mean a million values.
 class ValueCount {
  public:
-  /// Throws Error, with `place` and `key`, for more than two million values in total.
+  /// Throws Error, which names `place` and `key`, for more than two million values in total.
   void add(std::size_t values, const SourceLocation& place, const std::string& key);
 
  private:
@@ -70,11 +70,12 @@ class ValueCount {
 
 /// Returns the values of a list, of `range(first, end)` or `range(first, end, step)`, or of `logspace(first, last,
 /// count)`. The end of a range is excluded. The values of logspace include both ends and are evenly spaced in the
-/// logarithm. Any other value is a single value. Throws Error.
+/// logarithm. For anything else, returns `value` itself as the only value. Throws Error for an empty or malformed list
+/// or range.
 std::vector<Tree> expand_values(const Tree& value, const std::string& key, ValueCount& count);
 
-/// Parses KEY=VALUES of `palpate sweep`: `KEY=V1,V2`, `KEY=[V1, V2]`, `KEY=range(0,10)`, `KEY=logspace(1cm,5cm,8)`. A
-/// list next to other values is one value.
+/// Parses KEY=VALUES of `palpate sweep`: `KEY=V1,V2`, `KEY=[V1, V2]`, `KEY=range(0,10)`, `KEY=logspace(1cm,5cm,8)`. If
+/// VALUES has several parts, a part that is a list counts as one value.
 Axis parse_axis(const std::string& text, ValueCount& count);
 
 /// Returns the text of a swept value in results.csv.

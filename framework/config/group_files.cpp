@@ -12,14 +12,15 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Returns the folders of a group's files in their order. A whole config is a strategy, too: configs/default.yaml is
-/// the strategy `default`. Its folder comes last, so that a user's weighted.yaml may build on the strategy `weighted`.
+/// Returns the folders of a group's files, in the order of the search. A whole config is a strategy, too:
+/// configs/default.yaml is the strategy `default`. The folder of whole configs is the last, so that a user's config
+/// weighted.yaml may build on strategy/weighted.yaml.
 std::vector<fs::path> folders_of(const std::string& group) {
   return group == kStrategy ? std::vector<fs::path>{group, ""} : std::vector<fs::path>{group};
 }
 
-/// Returns the first file of a group, or "" if there is none. Throws Error if a folder may not be searched, because a
-/// later folder may have another file of that name.
+/// Returns the first file of a group, or "" if there is none. Throws Error if the permissions of a folder forbid the
+/// search. A later folder is not used then, because it might have another file of the same name.
 fs::path find_in(const std::vector<fs::path>& roots, const std::string& group, const std::string& name) {
   for (const fs::path& folder : folders_of(group)) {
     for (const fs::path& root : roots) {
@@ -48,8 +49,9 @@ bool gives(const fs::path& folder, fs::perms rights) {
 
 bool others_may_write(const fs::path& folder) { return gives(folder, fs::perms::others_write); }
 
-/// Returns whether a folder, such as /tmp, lets all users keep their own files (sticky bit). Without the sticky bit,
-/// others could replace the config itself, so groups add no danger; some mounted disks have only such folders.
+/// Returns whether all users may put files into a folder, but may not change the files of others (sticky bit), as in
+/// /tmp. Folders that are writable for all without the sticky bit are accepted: others could replace the config itself
+/// there, so groups add no danger, and some mounted disks have only such folders.
 bool is_common(const fs::path& folder) { return gives(folder, fs::perms::others_write | fs::perms::sticky_bit); }
 
 }  // namespace
@@ -69,7 +71,7 @@ GroupFiles::Roots GroupFiles::roots(const fs::path& beside) const {
     add(folder, is_common(folder));
     break;
   }
-  // The user did not choose this folder, so it is rejected if others may write there.
+  // The user did not choose ./configs explicitly, so it is rejected if others may write there.
   const fs::path working = fs::current_path();
   add(working / "configs", others_may_write(working) || others_may_write(working / "configs"));
   add(shipped_, false);

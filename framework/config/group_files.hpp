@@ -17,16 +17,17 @@ namespace palpate {
 /// Finds the file <folder>/<group>/<name>.yaml of a group. It searches the folder of the config, the nearest folder
 /// named `configs` above it, ./configs, and the configs of the program. The first file found is used.
 ///
-/// A group may name a program that a run starts, so the file must be the user's own. A file is rejected if all users
-/// may put files into its folder, as into /tmp (sticky bit). In ./configs, a file is also rejected if others may write
-/// there.
+/// A group may name a program that a run starts, so other users must not be able to supply the file. A file is rejected
+/// if all users may put files into its folder, as into /tmp (sticky bit). In ./configs, a file is also rejected if
+/// others may write there.
 class GroupFiles {
  public:
   /// `shipped`: the configs of the program. The folder need not exist.
   explicit GroupFiles(std::filesystem::path shipped) : shipped_(std::move(shipped)) {}
 
-  /// Returns the file for a config in the folder `beside`, or "" if there is none. Throws Error, with `place`, if the
-  /// only file is in a folder where others may write, or if a folder may not be searched.
+  /// Returns the file of a group for a config in the folder `beside`; "" if there is none. Throws Error, which names
+  /// `place`, if the only file is in a folder where other users may write. Throws Error if the permissions of a folder
+  /// forbid the search.
   std::filesystem::path find(const std::string& group, const std::string& name, const SourceLocation& place,
                              const std::filesystem::path& beside) const;
 
@@ -38,16 +39,16 @@ class GroupFiles {
   Error missing(const std::string& group, const std::string& name, const SourceLocation& place,
                 const std::filesystem::path& beside) const;
 
-  /// Returns `file`, or the program's own config of that name if `file` is a relative name configs/... that does not
-  /// exist. So an installed program provides the configs of a clone in every folder.
+  /// Returns `file`. If `file` is a relative name configs/... that does not exist, returns the program's own config of
+  /// this name instead. So an installed program finds its configs from every working folder.
   std::filesystem::path config(const std::filesystem::path& file) const;
 
-  /// Returns the folder that contains the group folder of `file`. The search for groups on which this group builds
-  /// starts there.
+  /// Returns the folder that contains the group folder of `file`. The search for groups on which the group of `file`
+  /// builds starts in this folder.
   static std::filesystem::path root_of(const std::filesystem::path& file, const std::string& group);
 
  private:
-  /// Folders to search, in this order.
+  /// Folders to search. All safe folders are searched before the open folders.
   struct Roots {
     std::vector<std::filesystem::path> safe;
     std::vector<std::filesystem::path> open;  ///< folders in which other users may have put a file

@@ -13,8 +13,8 @@ bool is_at_or_below(const std::string& path, const std::string& top) {
   return path.compare(0, top.size(), top) == 0 && (path.size() == top.size() || path[top.size()] == '.');
 }
 
-/// Reads the properties of keys. It skips their descriptions to save time, because every command reads the properties
-/// first.
+/// Reads the properties of keys from the field list. It skips the descriptions of the fields to save time, because
+/// every command reads the properties first.
 class ConfigKeys::Reader final : public Fields {
  public:
   explicit Reader(ConfigKeys& keys) : keys_(keys) {}

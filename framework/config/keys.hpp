@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Properties of config keys that the composition of configs needs: groups, inheritance between keys, and keys of a
-// strategy. All properties come from the field list of the config.
+// Properties of config keys that the composition of configs needs: groups, inheritance between keys, and whether a
+// strategy may set a key. All properties come from the field list of the config.
 #pragma once
 
 #include <palpate/options.hpp>
@@ -22,15 +22,16 @@ class ConfigKeys {
   /// `list` visits all top-level keys. Throws std::logic_error for a key whose owner (strategy or run) is not set.
   explicit ConfigKeys(const std::function<void(Fields&)>& list);
 
-  /// Returns whether a name at a dotted path chooses a file. This holds for the paths of groups, and for a plugin
-  /// within another one if its key is a plugin kind that is a group.
+  /// Returns whether a name at a dotted path chooses a file. This holds for the paths of groups. It also holds for a
+  /// plugin within another plugin if its key is the name of a plugin kind with group files.
   bool is_group(const std::string& path) const;
-  /// Returns whether a name without a file is the type of a plugin. `path`: the path of a group, or its last key.
+  /// Returns whether a name at `path` that has no file is the type of a plugin. `path`: the path of a group, or its
+  /// last key.
   bool is_plugin(const std::string& path) const;
-  /// Returns whether a top-level key chooses a plugin without group files. A name there is a type, and its options are
-  /// merged one by one.
+  /// Returns whether a top-level key chooses a plugin of a kind without group files. A name at this key is the type of
+  /// the plugin, and the plugin's options are merged one by one.
   bool is_typed(const std::string& key) const { return typed_.count(key) > 0; }
-  /// Returns the type of a key for which is_typed() holds, in a config without a type there; "" for other keys.
+  /// Returns the type that a key with is_typed() has if the config sets no type; "" for other keys.
   std::string default_type(const std::string& key) const;
   /// Returns whether a group lies within another group, as scene.effects does.
   bool is_part(const std::string& path) const;
@@ -40,13 +41,13 @@ class ConfigKeys {
   /// Returns whether a strategy may set the value at a dotted path. Unknown paths are accepted here and rejected later.
   bool is_of_strategy(const std::string& path) const;
   /// Returns whether a strategy's value of a top-level key is used only if the config does not set the key. This holds
-  /// for keys next to a plugin (Field::with_beside()).
+  /// for the sibling key of a plugin (Field::with_beside()).
   bool is_brought(const std::string& key) const;
-  /// Returns the key next to a plugin that contains further options of this plugin, for example `motion` for `backend`;
-  /// "" if there is none.
+  /// Returns the sibling key of a plugin, which contains further options of this plugin: for example `motion` for
+  /// `backend`; "" if there is none.
   std::string beside(const std::string& path) const;
-  /// Returns whether the group at `choice` decides the value at a dotted path, which lies within the group or within
-  /// the key next to it.
+  /// Returns whether the group at `choice` decides the value at a dotted path. This holds if the path is within the
+  /// group or within its sibling key.
   bool is_decided(const std::string& path, const std::string& choice) const;
 
   /// Returns pairs of paths. The first path of a pair inherits from the second.
@@ -59,10 +60,10 @@ class ConfigKeys {
   class Reader;
 
   std::vector<std::string> groups_;
-  std::set<std::string> plugins_;             ///< names of plugin kinds that are groups
+  std::set<std::string> plugins_;             ///< names of plugin kinds with group files
   std::map<std::string, std::string> typed_;  ///< default type by key
   std::set<std::string> of_run_;
-  std::map<std::string, std::string> beside_;  ///< key next to a plugin, by the key of the plugin
+  std::map<std::string, std::string> beside_;  ///< sibling key of a plugin, by the key of the plugin
   std::vector<std::pair<std::string, std::string>> heirs_;
 };
 

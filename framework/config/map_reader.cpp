@@ -16,13 +16,13 @@
 namespace palpate {
 namespace {
 
-/// Returns whether a key is a dotted path, as on the command line, that begins with a known option.
+/// Returns whether a key in a file is a dotted path, as used on the command line, whose first part is a known option.
 bool is_below_one_of(const std::string& key, const std::vector<std::string>& known) {
   const auto dot = key.find('.');
   return dot != std::string::npos && std::find(known.begin(), known.end(), key.substr(0, dot)) != known.end();
 }
 
-/// Returns the form of a dotted key in a file, for example `label: {clip: yes}`.
+/// Returns how a dotted key must be written in a file, for example `label: {clip: yes}`.
 std::string nested(const Tree::Entry& entry) {
   const auto groups = std::count(entry.key.begin(), entry.key.end(), '.');
   constexpr std::size_t kShort = 40;
@@ -56,9 +56,9 @@ MapReader::MapReader(const Tree& input, std::string path, ResolveNotes& notes, P
 Tree MapReader::finish(const std::vector<std::string>& elsewhere) {
   for (const Tree::Entry& entry : input_.entries) {
     if (silent_ || is_known(entry.key)) continue;
-    Layer highest = std::numeric_limits<Layer>::min();  // the latest source of any part of the value
+    Layer highest = std::numeric_limits<Layer>::min();  // highest layer of any part of the value
     for_all(entry.value, [&](const Tree& one) {
-      // The layer of a group is not that of its values: composition may have made the group.
+      // The layer of a non-empty map is ignored, because composition may have created the map. Only its values count.
       if (!one.is_map() || one.entries.empty()) highest = std::max(highest, one.layer);
     });
     if (highest < type_layer_) {
@@ -232,7 +232,7 @@ bool MapReader::is_known(const std::string& key) const {
 
 void MapReader::refuse_unknown(const Tree::Entry& entry, const std::vector<std::string>& known) const {
   if (is_beside(entry.key)) {
-    const Tree* last = &entry.value;  // the latest source of any part of the value
+    const Tree* last = &entry.value;  // part of the value on the highest layer
     for_all(entry.value, [&](const Tree& one) { last = one.layer > last->layer ? &one : last; });
     throw Error((last->layer > entry.value.layer ? last->place : entry.place).text(),
                 fmt::format("{} has no {}", plugin_, entry.key), fmt::format("remove '{}'", path_of(entry.key)));
@@ -240,7 +240,7 @@ void MapReader::refuse_unknown(const Tree::Entry& entry, const std::vector<std::
   const std::string reason = fmt::format("unknown option '{}'", entry.key);
   if (is_below_one_of(entry.key, known)) throw Error(entry.place.text(), reason, "write " + nested(entry));
   const std::string hint = suggestion(entry.key, known);
-  // If the hint lists all known keys, the message must name the map that has them.
+  // If the hint lists all known keys, the message must name the map to which these keys belong.
   const bool listed = hint.rfind("known: ", 0) == 0;
   if (const std::string deeper = listed && path_.empty() ? path_to(entry.key) : ""; !deeper.empty())
     throw Error(entry.place.text(), reason, "write " + deeper);

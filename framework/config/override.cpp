@@ -22,7 +22,7 @@ std::size_t comment_in(const std::string& value, const Tree& read) {
     return value[at] == '#' && (at == 0 || value[at - 1] == ' ' || value[at - 1] == '\t');
   };
   for (std::size_t at = 0; at < value.size(); ++at) {
-    // A # within quotes is text; then the value without the rest parses differently.
+    // A # within quotes is text. In this case, the value that is cut at the # parses to something else.
     if (begins(at) && parse_value(value.substr(0, at), kCommandLine).canonical() == read.canonical()) return at;
   }
   return std::string::npos;

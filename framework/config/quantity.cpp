@@ -16,13 +16,13 @@
 namespace palpate {
 namespace {
 
-/// A unit with its factor. The factor is a power of ten if possible, because moving the decimal point in the text is
-/// exact.
+/// A unit and its factor to the SI unit. The factor is a power of ten if possible, because a change of the exponent in
+/// the text is exact.
 struct UnitName {
   std::string_view name;
   Unit unit;
-  int power;            ///< exponent of ten
-  double factor = 1.0;  ///< additional factor
+  int power;            ///< power of ten of the factor
+  double factor = 1.0;  ///< rest of the factor
 };
 
 constexpr double kPi = 3.14159265358979323846;
@@ -203,7 +203,7 @@ std::optional<AnyQuantity> any_quantity(const std::string& text) {
     unit = known->unit;
   }
   std::optional<AnyQuantity> out;
-  // A value such as 1e999 m is not an error here, but a text.
+  // A value such as 1e999 m is not an error here; it is not a quantity.
   catch_error([&] { out = AnyQuantity{read_quantity(Tree::scalar(text), "", unit), unit}; });
   return out;
 }

@@ -14,10 +14,10 @@
 namespace palpate {
 namespace {
 
-/// Value used for a key that the config lacks.
+/// The value of a key that the config lacks.
 const Tree kNothing;
 
-/// Returns the path of a file that a config names at `place`: see Field::names_file().
+/// Returns the path of a file that is named at the source location `place`: see Field::names_file().
 std::string found_from(const SourceLocation& place, const std::string& file) {
   namespace fs = std::filesystem;
   constexpr int kMostLevels =
@@ -211,7 +211,7 @@ class Resolver final : public MapReader {
 
   void adopt(PluginChoice& choice, const Field& field) override {
     const Tree* const claimed = claim(field);
-    if (claimed == nullptr) throw Error(*notes_.missing);  // without the type, the other keys cannot be checked
+    if (claimed == nullptr) throw Error(*notes_.missing);  // if the type is missing, the other keys cannot be checked
     const Tree& type = *claimed;
     choice.type = name_of_plugin(type, choice.kind, name(field));
     note_type(type);
@@ -228,7 +228,8 @@ class Resolver final : public MapReader {
   }
 
  private:
-  /// Returns the options of the plugin at `field`, together with the option next to it: see Field::with_beside().
+  /// Returns the options of the plugin at `field`, together with the value of its sibling key: see
+  /// Field::with_beside().
   Tree with_beside(const Tree* tree, const Field& field) const {
     Tree out = tree != nullptr ? *tree : Tree::map();
     check_beside(out, field.name, field.beside);
@@ -252,14 +253,14 @@ class Resolver final : public MapReader {
                 fmt::format("'palpate plugins {}' lists the types", kind));
   }
 
-  /// Lists the plugin's options to `fields`. Errors about its library get the place `place`.
+  /// Lists the options of a plugin to `fields`. Errors about the plugin's library get the source location `place`.
   void list_plugin(const PluginChoice& choice, const std::string& place, Resolver& fields) {
     notes_.plugins.emplace(choice.kind, choice.type);
     fields.silent_ = plugins_.is_silent(choice.kind, choice.type);
     if (fields.silent_) return;
     try {
       plugins_.describe(choice.kind, choice.type, fields);
-    } catch (const Error& trouble) {  // errors of the plugin source have no place
+    } catch (const Error& trouble) {  // errors of the plugin source have no source location
       if (!trouble.where().empty()) throw;
       throw Error(place, trouble.reason(), trouble.hint(), trouble.kind());
     }
@@ -287,9 +288,9 @@ class Resolver final : public MapReader {
     inner.above_ = path_;
     inner.id_above_ = id_path_;
     inner.known_.emplace_back("type");
-    inner.note_type(type != nullptr ? *type : kNothing);  // older options that this type lacks are dropped
+    inner.note_type(type != nullptr ? *type : kNothing);  // options on lower layers that this type lacks are dropped
     if (inner.enters_id_) inner.identify(inner.id_path_ + "type", choice.type);
-    // A missing option is reported at the choice of the type, not in the group file below.
+    // A missing option is reported at the location where the type is chosen, not in the group file.
     if (type != nullptr && type->place.file) inner.output_.place = type->place;
     notes_.origins.push_back({inner.path_ + "type", type != nullptr ? at : "default"});
     list_plugin(choice, at, inner);

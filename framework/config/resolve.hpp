@@ -16,14 +16,16 @@
 
 namespace palpate {
 
-/// Source of the option lists of plugins. The plugin host opens a library when its options are needed.
+/// Source of the option lists of plugins. The plugin host implements it and loads a library when its options are
+/// needed.
 class PluginSource {
  public:
   virtual ~PluginSource() = default;
   /// Lists the options of a plugin to `fields`. Throws Error, without a place, if the plugin does not exist or cannot
   /// be loaded.
   virtual void describe(const std::string& kind, const std::string& name, Fields& fields) const = 0;
-  /// Returns whether the options of a plugin are unknown, because it is not built yet. Any options are then accepted.
+  /// Returns whether the options of a plugin are unknown, because the plugin is not built yet. resolve() then accepts
+  /// any options.
   virtual bool is_silent(const std::string&, const std::string&) const { return false; }
 };
 
@@ -37,29 +39,30 @@ struct ResolveNotes {
     std::string place;  ///< "file:line:column", "command line", or "default"
   };
   std::vector<Origin> origins;  ///< origin of each value, in the order of the resolved config
-  std::vector<Origin> dropped;  ///< options that were set for another type and that the final type lacks
+  std::vector<Origin> dropped;  ///< options that were set for a type that was replaced, and that the final type lacks
   PluginNames plugins;          ///< all plugins of the config
-  /// Lines `path=value` of all values that affect the results of a run, in the order of the fields: see
+  /// One line `path=value` for each value that affects the results of a run, in the order of the fields: see
   /// identity_text().
   std::vector<std::string> identity;
   std::optional<Error> missing;  ///< first missing option; resolve() throws it
 };
 
-/// Throws Error if `group`, the options of the plugin at the key `plugin`, contains `option`, which must stand next to
-/// it (Field::with_beside()). `option` may be "".
+/// Throws Error if `group`, the options of the plugin at the key `plugin`, contains the key `option`, which must be a
+/// sibling key of `plugin` (Field::with_beside()). `option` may be "".
 void check_beside(const Tree& group, const std::string& plugin, const std::string& option);
 
-/// Reads `input` into `options` and returns the resolved config. Throws Error, with its place, for the first unknown
-/// key, wrong type, missing unit or value out of range. A missing option is reported last, because an unknown key may
-/// be its misspelt name.
+/// Reads `input` into `options` and returns the resolved config. Throws Error, with the source location, for the first
+/// unknown key, wrong type, missing unit or value out of range. A missing option is reported last, because an unknown
+/// key may be the misspelt name of this option.
 ///
-/// `elsewhere` lists top-level keys that other code reads; hints may contain them. In a map with Tree::complete, a
-/// missing option has its neutral value (Field::neutral()). A missing option without a neutral value is an error,
-/// unless it is not part of the id.
+/// `elsewhere` lists top-level keys that other code reads; hints may suggest these keys, too. In a map with
+/// Tree::complete, a missing option has its neutral value (Field::neutral()). If a missing option has no neutral value,
+/// it is an error, except for options that are not part of the id.
 Tree resolve(Options& options, const Tree& input, const PluginSource& plugins, ResolveNotes& notes,
              const std::vector<std::string>& elsewhere = {});
 
-/// Lists the fields of `describe` and fills them from a resolved tree. The plugin host creates plugins in this way.
+/// Fills the fields that `describe` lists with the values of a resolved tree. `path`: path of this tree in the config,
+/// for messages. The plugin host creates plugins in this way.
 void fill(const Tree& resolved, const PluginSource& plugins, const std::string& path,
           const std::function<void(Fields&)>& describe);
 

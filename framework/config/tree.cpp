@@ -81,7 +81,7 @@ std::pair<std::string_view, std::string_view> split_path(std::string_view path) 
   return {path.substr(0, dot), path.substr(dot + 1)};
 }
 
-/// Returns the item of a list with the number `name`, or null.
+/// Returns the item of a list whose index is the text `name`, or null.
 const Tree* find_item(const Tree& list, std::string_view name) {
   std::size_t index = 0;
   const auto parsed = std::from_chars(name.data(), name.data() + name.size(), index);
@@ -93,7 +93,8 @@ const Tree* find_child(const Tree& tree, std::string_view name) {
   return tree.kind == Tree::Kind::list ? find_item(tree, name) : tree.find(name);
 }
 
-/// Returns the edit distance, where a swap of neighbours counts once (optimal string alignment).
+/// Returns the edit distance of two texts. A swap of neighbouring characters counts as one edit (optimal string
+/// alignment).
 std::size_t edit_distance(std::string_view a, std::string_view b) {
   std::vector<std::vector<std::size_t>> d(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
   for (std::size_t i = 0; i <= a.size(); ++i) d[i][0] = i;
@@ -110,7 +111,8 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
   return d[a.size()][b.size()];
 }
 
-/// Returns the shortest known name that contains `name`: first_hit_tap for hit. Returns "" if there is none.
+/// Returns the shortest known name that contains `name`, for example first_hit_tap for hit. Returns "" if there is
+/// none.
 std::string longer_form(std::string_view name, const std::vector<std::string>& known) {
   constexpr std::size_t kLeast = 3;
   std::string best;

@@ -22,11 +22,11 @@ struct SourceLocation {
   std::string text() const;
 };
 
-/// Returns "file:line:column" of the position after `bytes` bytes of a file's text.
+/// Returns "file:line:column" of the position after the first `bytes` bytes of `text`, the text of `file`.
 std::string place_in(const std::string& file, std::string_view text, std::size_t bytes);
 
-/// Priority of a source: the value on the highest layer is used. Groups in `defaults` have the layers from 0 on, in
-/// their order.
+/// Priority of the source of a value: if several sources set a key, the value on the highest layer is used. Groups in
+/// `defaults` have the layers from 0 on, in the order of the list.
 using Layer = int;
 constexpr Layer kGroupLayer = 0;
 constexpr Layer kFileLayer = 1000;
@@ -40,12 +40,13 @@ struct Tree {
 
   Kind kind = Kind::null;
   std::string text;            ///< text of a scalar, as written
-  bool quoted = false;         ///< whether the scalar was in quotes; it is then a text even if it looks like a number
+  bool quoted = false;         ///< whether the scalar was in quotes; if so, it is a text even if it looks like a number
   std::vector<Tree> items;     ///< items of a list
   std::vector<Entry> entries;  ///< entries of a map, in the written order; keys are unique
   SourceLocation place;
   Layer layer = kFileLayer;
-  bool complete = false;  ///< whether this is a map of a record; it then has all options of the version that wrote it
+  /// Whether this map is from a record; it has all options of the version that wrote the record.
+  bool complete = false;
 
   Tree() = default;
   explicit Tree(Kind of) : kind(of) {}
@@ -66,34 +67,35 @@ struct Tree {
   void erase(std::string_view key);
   /// Erases the value at a dotted path such as "kernel.length_scale".
   void erase_path(std::string_view path);
-  /// Returns the value at a dotted path, or null. Items of a list have numbers from 0. The rest of a path is first
-  /// tried as a single key, because keys of `expect` contain dots.
+  /// Returns the value at a dotted path, or null. Items of a list have numbers from 0. At each map, the whole rest of
+  /// the path is first tried as a single key, because keys of `expect` contain dots.
   const Tree* find_path(std::string_view path) const;
-  /// Returns the value at a dotted path. Missing maps are created with the place of `asker`. Throws Error, with that
-  /// place, if a scalar is in the way or a list is too short.
+  /// Returns the value at a dotted path. Missing maps are created with the source location `asker`. Throws Error, with
+  /// this location, if the path leads through a scalar or to a missing item of a list.
   Tree& at_path(std::string_view path, const SourceLocation& asker);
-  /// Sets the value at a dotted path, as at_path() does. The key gets the place of the value.
+  /// Sets the value at a dotted path; missing maps are created as in at_path(). The key gets the source location of the
+  /// value.
   void put(std::string_view path, Tree value);
-  /// Returns the place of the value at a dotted path, or of the nearest map around it that has a place. The place is
-  /// empty if there is no such value.
+  /// Returns the source location of the value at a dotted path. If the value is missing or has no location, returns the
+  /// location of the nearest map around it that has one; the result is empty if there is none.
   SourceLocation place_of(std::string_view path) const;
 
   /// Sets the layer of this tree and all values within it.
   void set_layer(Layer layer);
-  /// Adds `steps` to the layers of this tree and of all values within it, which keeps their order.
+  /// Adds `steps` to the layers of this tree and of all values within it. The order of the layers does not change.
   void shift_layer(int steps);
 
   /// Merges `upper` into this tree. Maps are merged key by key; any other value is replaced if the layer of `upper` is
-  /// not lower. A key has the place of its latest source.
+  /// not lower. A key has the source location of the source with the highest layer.
   void merge(const Tree& upper);
 
-  /// Returns one line of text that is the same for equal values, even if their places differ.
+  /// Returns one line of text that is the same for equal values, even if their source locations differ.
   std::string canonical() const;
   /// Appends the text of canonical() to `out`.
   void append_canonical(std::string& out) const;
 
  private:
-  /// A value and the map or list that contains it; null for the whole tree.
+  /// A value, and the map or list that contains it. `holder` is null if the value is the whole tree.
   struct Slot {
     Tree* holder;
     Tree& value;
@@ -104,7 +106,7 @@ struct Tree {
 
 struct Tree::Entry {
   std::string key;
-  SourceLocation place;  ///< place of the key
+  SourceLocation place;  ///< source location of the key
   Tree value;
 };
 
@@ -116,7 +118,8 @@ void for_all(AnyTree& tree, const Visit& visit) {
   for (auto& entry : tree.entries) for_all(entry.value, visit);
 }
 
-/// Returns whether `text` is a valid name of a plugin or a group file. kNameHint is the hint of the error.
+/// Returns whether `text` is a valid name of a plugin or a group file. kNameHint is the hint for errors about invalid
+/// names.
 bool is_name(const std::string& text);
 inline constexpr const char* kNameHint = "a name has letters, digits, '_' and '-', and no path";
 

@@ -21,16 +21,18 @@
 namespace palpate {
 namespace {
 
-/// Limit of the values after the expansion of aliases. For example, nine lines of aliases can expand to 10^9 values.
+/// Limit of the number of values after the expansion of aliases. Nine lines of aliases, for example, can expand to 10^9
+/// values.
 constexpr int kMaxValues = 100'000;
 constexpr std::size_t kMaxDepth = 100;
-/// Limit of all texts after the expansion of aliases. to_yaml() writes at most a quarter of this.
+/// Limit of the total size of all texts after the expansion of aliases. Configs that palpate writes have at most a
+/// quarter of this size.
 constexpr std::size_t kMaxTextBytes = 4 << 20;
-/// Limit of keys per map, because a search for a key is linear.
+/// Limit of the number of keys per map, because the time to find a key is linear in this number.
 constexpr std::size_t kMaxKeys = 1000;
 
-/// Returns whether the quoted scalar at the beginning of `text` has a closing quote. yaml-cpp also accepts the end of
-/// the text instead, and so would read the rest of a config as a name.
+/// Returns whether the quoted scalar at the beginning of `text` has a closing quote. Without the closing quote,
+/// yaml-cpp would read the rest of a config as a part of the scalar.
 bool is_closed(std::string_view text) {
   const char quote = text.front();
   for (std::size_t i = 1; i < text.size(); ++i) {
@@ -53,21 +55,22 @@ class SecondDocument : public YAML::Exception {
 /// Builds the tree of a text from the events of the parser.
 class Reader final : public YAML::EventHandler {
  public:
-  /// Without `lines`, places name only the file, because line numbers are meaningless for an argument of the command
+  /// `lines`: whether source locations have line numbers. Line numbers are meaningless for an argument of the command
   /// line.
   Reader(const std::string& file, bool lines) : file_(std::make_shared<const std::string>(file)), lines_(lines) {
     tree_.place.file = file_;
   }
 
   /// Returns the tree of the only document; null for an empty document. Throws YAML::Exception if the text is not valid
-  /// YAML, and else Error for the first rejected part.
+  /// YAML. Throws Error for the first part that is valid YAML but is rejected.
   Tree read(const std::string& text) {
     // yaml-cpp's positions do not count the byte order mark.
     constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
     text_ = std::string_view(text).substr(text.rfind(kByteOrderMark, 0) == 0 ? kByteOrderMark.size() : 0);
     std::istringstream in(text);
     YAML::Parser parser(in);
-    // A third document is not read: after a stray comma, yaml-cpp finds endless documents without progress.
+    // At most two documents are read, because after a stray comma, yaml-cpp returns endlessly many documents without
+    // progress.
     for (; documents_ < 2; ++documents_) parser.HandleNextDocument(*this);
     if (refused_) throw *refused_;
     return std::move(tree_);
@@ -77,8 +80,8 @@ class Reader final : public YAML::EventHandler {
   void OnDocumentEnd() override {}
   void OnNull(const YAML::Mark& mark, YAML::anchor_t anchor) override { put(mark, "", anchor, Tree()); }
   void OnAlias(const YAML::Mark& mark, YAML::anchor_t anchor) override {
-    if (refused_) return;                      // stop after an error, because an alias may expand to many values
-    const auto found = anchors_.find(anchor);  // an alias within its own anchor is not found
+    if (refused_) return;  // after an error, aliases are skipped, because they may expand to many values
+    const auto found = anchors_.find(anchor);  // an alias within its own anchor is not in anchors_
     if (found == anchors_.end()) refuse(place(mark), "nested too deeply", "at most 100 levels");
     put(mark, "", YAML::NullAnchor, found == anchors_.end() ? Tree() : found->second);
   }
@@ -98,11 +101,12 @@ class Reader final : public YAML::EventHandler {
   void OnMapEnd() override { close(); }
 
  private:
-  /// A list or map that receives the next values. Its address is stable, because only the innermost one grows.
+  /// A list or map that receives the next values. Its address is stable, because only the innermost open list or map
+  /// grows.
   struct Open {
     Tree* tree;  ///< null after an error
     YAML::anchor_t anchor;
-    bool has_key;  ///< the tree is a map, and the next value belongs to its last key
+    bool has_key;  ///< whether the tree is a map and the next value belongs to its last key
   };
 
   void close() {
@@ -110,7 +114,8 @@ class Reader final : public YAML::EventHandler {
     open_.pop_back();
   }
 
-  /// Adds a key or a value, and returns the place of a value in the tree. The content of an alias keeps its place.
+  /// Adds a key or a value. Returns a pointer to the value in the tree; null for a key. The content of an alias keeps
+  /// the source location of its anchor.
   Tree* put(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor, Tree value) {
     if (documents_ > 0) throw SecondDocument(mark);
     if (refused_) return nullptr;
@@ -123,10 +128,11 @@ class Reader final : public YAML::EventHandler {
       bool& has_key = open_.back().has_key;
       if (around.is_map() && !std::exchange(has_key, !has_key)) return add_key(around, value);
       slot = around.is_map() ? &around.entries.back().value : &around.items.emplace_back();
-      // yaml-cpp may put an absent value (`key:`) on a later line, so the place of the key is used.
+      // yaml-cpp may report an absent value (`key:`) on a later line, so the value gets the source location of the key.
       if (around.is_map() && value.kind == Tree::Kind::null) value.place = around.entries.back().place;
     }
-    // yaml-cpp sets "?" for plain scalars and "!" for quoted ones and blocks. All other tags come from the text.
+    // yaml-cpp sets the tag "?" for plain scalars, and "!" for quoted scalars and block scalars. All other tags are
+    // from the text.
     if (!tag.empty() && tag != "?" && tag != "!") {
       refuse(value.place, fmt::format("tags ('{}') are not supported", tag), "remove it");
     }
@@ -153,7 +159,7 @@ class Reader final : public YAML::EventHandler {
     return nullptr;
   }
 
-  /// Counts a value at this depth and, for an alias, all values within it.
+  /// Counts a value at this depth. The content of an alias is a value with nested values, which are counted, too.
   void count(const Tree& value, std::size_t depth) {
     if (++values_ > kMaxValues)
       refuse(value.place, "too many values", "use fewer aliases: they expand to more than 100000 values");
@@ -173,7 +179,7 @@ class Reader final : public YAML::EventHandler {
     refuse(place(mark), "the quote that begins here does not end", "close it");
   }
 
-  /// Keeps the first error. It is thrown only if the whole text is valid YAML.
+  /// Stores the first error. read() throws it only if the whole text is valid YAML.
   void refuse(const SourceLocation& at, const std::string& reason, const std::string& hint = {}) {
     if (!refused_) refused_ = Error(at.text(), reason, hint);
   }
@@ -185,7 +191,7 @@ class Reader final : public YAML::EventHandler {
   std::shared_ptr<const std::string> file_;
   bool lines_;
   std::string_view text_;
-  int documents_ = 0;  ///< number of documents read
+  int documents_ = 0;  ///< number of documents that were read
   int values_ = 0;
   std::size_t text_bytes_ = 0;  ///< total bytes of all texts
   Tree tree_;
@@ -267,7 +273,7 @@ Tree read_yaml(const std::filesystem::path& path, Origin origin) {
 }
 
 void check_readable(const Tree& config, const std::string& file) {
-  // Small configs pass without a test, because to_yaml() takes longer than resolving the config.
+  // Small configs are accepted without a test, because to_yaml() takes longer than resolve().
   constexpr std::size_t kSmall = 1 << 16;
   if (config.canonical().size() < kSmall) return;
   int values = 0;  // number of values, counted as in Reader
@@ -283,7 +289,7 @@ Tree parse_value(const std::string& text, const std::string& file) {
   if (utf8_prefix(text) < text.size()) throw Error(file, "not UTF-8", "write it in UTF-8");
   try {
     if (!is_block) return Reader(file, false).read(text);
-  } catch (const YAML::Exception&) {  // an invalid value is a text: see below
+  } catch (const YAML::Exception&) {  // invalid YAML is a text: see below
   }
   Tree tree = Tree::scalar(text, true);
   tree.place.file = std::make_shared<const std::string>(file);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Writes YAML: to_yaml(), and the comments with places.
+// Writes YAML: to_yaml(), and to_yaml_with_places() with source locations in comments.
 #include "config/yaml.hpp"
 #include "reading/reading.hpp"
 
@@ -11,7 +11,8 @@
 namespace palpate {
 namespace {
 
-/// Returns the YAML that yaml-cpp writes for a scalar with special characters, in a block or within brackets.
+/// Returns the YAML that yaml-cpp writes for a scalar with special characters. `in_brackets`: whether the scalar is an
+/// item of a list in brackets.
 std::string odd_scalar(const Tree& scalar, bool in_brackets) {
   YAML::Emitter out;
   if (in_brackets) out << YAML::Flow << YAML::BeginSeq;
@@ -75,8 +76,8 @@ constexpr std::string_view kComment = "  # ";
 
 const SourceLocation kNowhere;
 
-/// Appends the place of a value, or of the list around it if the value has none. Appends nothing for a map, because its
-/// values have their own places.
+/// Appends a comment with the source location of a value. If the value has none, the comment contains `around`, the
+/// location of the list around the value. Appends nothing for a map, because its values have their own locations.
 void append_place(std::string& out, const Tree& value, const SourceLocation& around) {
   if (value.is_map()) return;
   const SourceLocation& known = value.place.file ? value.place : around;
@@ -96,7 +97,8 @@ void append_place(std::string& out, const Tree& value, const SourceLocation& aro
   if (known.line > 0) out.append(":").append(std::to_string(known.line)).append(":") += std::to_string(known.column);
 }
 
-/// Appends a tree whose first line begins at `column`, the current end of `out`. Adds places if `around` is not null.
+/// Appends a tree whose first line begins at `column`, the current end of `out`. Adds comments with source locations if
+/// `around` is not null.
 void append_block(std::string& out, const Tree& tree, std::size_t column, const SourceLocation* around) {
   if (is_in_line(tree)) {
     append_in_line(out, tree);

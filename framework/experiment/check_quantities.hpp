@@ -8,7 +8,7 @@
 
 namespace palpate {
 
-/// Removes the quantities that `belief` does not offer from an optional reader.
+/// Removes from `reader`, an optional reader, the quantities that `belief` does not offer.
 void leave_out_unoffered(ReadPlan::Reader& reader, const Belief& belief);
 
 /// Throws Error if a reader reads a quantity that `belief`, named `name`, does not offer.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Read this file first: it is the program. After the paper (Sun and Min 2021, section III): tap, add the point, update
-// the models, choose the next tap by the exploration function.
+// Read this file first: it contains the main loop. The loop follows Sun and Min 2021, section III: tap, add the point,
+// update the models, choose the next tap by the exploration function.
 #include "experiment/experiment.hpp"
 
 #include "experiment/stop_rules.hpp"
@@ -18,7 +18,8 @@
 namespace palpate {
 namespace {
 
-/// Whether the distance of a result lies on the line. It may be absent on lines from above, and for a free line.
+/// Returns whether the distance of a result is within the length of the line. The distance may be absent on lines from
+/// above and after `no_contact`.
 bool ends_on_line(const TapLine& line, const TapResult& result) {
   if (result.outcome != Outcome::contact && result.outcome != Outcome::no_contact) return true;
   if (!result.distance) return line.from_above || result.outcome == Outcome::no_contact;
@@ -36,7 +37,7 @@ void Experiment::run(Observer& observer, int most_taps) {
 }
 
 std::optional<TapRecord> Experiment::begin(Observer& observer, int most_taps, const TapOverride* override) {
-  belief_->update();  // take in the last tap, fit
+  belief_->update();  // adds the last tap to the models, fits included
   show();
   std::optional<std::string> reason;
   std::optional<TapRecord> tap;
@@ -44,7 +45,7 @@ std::optional<TapRecord> Experiment::begin(Observer& observer, int most_taps, co
     reason = reason_to_stop(most_taps, override);
     if (!reason && !(tap = choose_next(override))) reason = "no candidate is left";
   } catch (const Error&) {
-    // An interrupted program of an acquisition or a backend is no failure.
+    // If the user interrupts, the program of an acquisition or a backend may end with an Error, which is not a failure.
     if (!is_stop_wished()) throw;
     reason = kStoppedByUser;
   }
@@ -91,7 +92,7 @@ std::optional<TapRecord> Experiment::choose_next(const TapOverride* override) {
 
 void Experiment::end(TapRecord& tap, Observer& observer) {
   tap.reading = belief_->read(tap.request, tap.result);
-  // Before any model takes it in: whatever a plugin does with it, a tap that was made is not lost.
+  // The tap is recorded before any model receives it. So a tap that was made is not lost if a plugin fails.
   observer.record(tap, clock_.take());
   take_in(tap);
   check_backend(tap);
@@ -169,7 +170,7 @@ RunResult Experiment::result() {
   belief_->update();
   belief_->begin(Stage::summary);
   belief_->update();
-  // The backend, which may have ended, is not asked after the last tap.
+  // After the last tap, all lines are accepted without calling the backend, whose program may have ended.
   belief_->draw_candidates([](const Candidates&, BoolOut out) { out.setConstant(true); });
   belief_->infer();
   return monitor_.result(*belief_);
@@ -237,7 +238,7 @@ void Experiment::check_backend(const TapRecord& tap) {
     throw Error("backend/" + options_.backend.type, reason, hint, Error::Kind::run);
   };
   if (last.ends_run) fail(last.reason.empty() ? "cannot continue and gives no reason" : last.reason);
-  // One number that is none may be a glitch. So many in a row are none, and no model is made of a run of them.
+  // One impossible result may be a glitch. This many in a row mean that the backend is faulty.
   constexpr int kMostRefused = 10;
   refused_in_a_row_ = is_refused(last) ? refused_in_a_row_ + 1 : 0;
   if (refused_in_a_row_ == kMostRefused) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The experiment: tap, read, fit, infer, score, choose, tap again.
+// The main loop of a run: tap, read the result, fit, infer, score, choose the next tap.
 #pragma once
 
 #include "experiment/check_quantities.hpp"
@@ -21,77 +21,82 @@
 
 namespace palpate {
 
-/// What an experiment works with, beside its options. All references must outlive it.
+/// Parts that an experiment needs in addition to its options. All references must outlive the experiment.
 struct ExperimentSetup {
   const PluginFactory& factory;
-  const std::atomic<bool>* interrupted = nullptr;  ///< set by the user's wish to stop; may be null
-  std::shared_ptr<Backend> backend = nullptr;      ///< in the place of the config's
-  std::string directory = {};                      ///< of the record; "" if none is kept
-  /// Readers beside those of the config: of displays and pages, which look at a copy of the run, and of a calling
-  /// program. The surface is read from the earlier of both stages.
+  const std::atomic<bool>* interrupted = nullptr;  ///< set when the user asks to stop; may be null
+  std::shared_ptr<Backend> backend = nullptr;      ///< replaces the backend of the config; null for none
+  std::string directory = {};                      ///< folder of the record; "" without a record
+  /// Readers in addition to those of the config: displays and pages, which read a replay of the run, and a calling
+  /// program. If `readers.surface_from` is set, it replaces the stage `summary` as the stage from which on the surface
+  /// is read.
   ReadPlan readers = {{}, std::nullopt};
 };
 
-/// The readers of a run, and its models, each with the readers because of which it is built.
+/// The readers of a run, and pairs of a model that is built and a reader that needs it.
 struct RunPlan {
   ReadPlan read;
   std::vector<PlannedModel> models;
 };
 
-/// One run of one config: the loop. It owns scene, backend and belief, and writes nothing. The loop has two halves, for
-/// taps that are made elsewhere: begin() chooses, end() takes the result.
+/// One run of one config. An Experiment owns scene, backend and belief, and writes no files. If another program makes
+/// the taps, it calls the two halves of the loop: begin() chooses a tap, and end() processes its result.
 class Experiment final {
  public:
-  /// Throws Error for whatever only building can find out.
+  /// Creates all plugins of the run. Throws Error for faults of the config that appear only when the plugins are
+  /// created.
   Experiment(const ExperimentOptions& options, const ExperimentSetup& setup);
 
-  /// Taps until a stop rule holds, or `most_taps` are made. Throws Error when the backend cannot continue; the last tap
-  /// is recorded then.
+  /// Makes taps until a stop rule holds or the run has `most_taps` taps. Throws Error if the backend cannot continue;
+  /// the last tap is then already recorded.
   void run(Observer& observer, int most_taps = std::numeric_limits<int>::max());
 
-  /// Chooses the next tap, asks `observer` for leave and announces it. Returns nullopt when the run is over: counts()
-  /// has the reason.
+  /// Chooses the next tap, asks `observer` for permission, and announces the tap. Returns nullopt if the run ends here;
+  /// counts() then contains the reason.
   std::optional<TapRecord> begin(Observer& observer, int most_taps = std::numeric_limits<int>::max(),
                                  const TapOverride* override = nullptr);
 
-  /// Reads, records and takes in the result of the tap that begin() chose. Throws Error as run() does.
+  /// Reads and records the result of the tap that begin() chose, and adds it to the belief. Throws Error as run() does.
   void end(TapRecord& tap, Observer& observer);
 
-  /// Returns why no further tap is to be made, nullopt if one is. Infers, unless the counts alone tell it.
+  /// Returns the reason why the run stops here; nullopt if it continues. Updates the models, unless the counts alone
+  /// give the reason.
   std::optional<std::string> reason_to_stop(int most_taps = std::numeric_limits<int>::max(),
                                             const TapOverride* override = nullptr);
 
-  /// Chooses the next tap, whatever the budget, and describes the state before it. Returns the same until the next
-  /// take_in(); nullopt if no candidate is left.
+  /// Chooses the next tap, even if the budget is spent, and stores the state of the belief in the result. Until the
+  /// next take_in(), every call returns the same tap. Returns nullopt if no candidate is left.
   std::optional<TapRecord> choose_next(const TapOverride* override = nullptr);
 
-  /// Takes in a tap that was made. The models take it in with the next tap.
+  /// Adds a tap that was made to the belief and to the counts. The models are updated only when the next tap is chosen.
   void take_in(const TapRecord& tap);
 
-  /// Takes in the taps of an earlier process, in their order, as the loop did.
+  /// Adds the taps of an earlier process, in their order. Stages begin and models are updated as in that process.
   void resume(const std::vector<TapRecord>& taps);
 
-  /// Has the readers of the first tap read, and computes their arrays as of now: for those who only look.
+  /// Begins the stage `first_tap` and computes the arrays of all begun stages, for displays and exports that make no
+  /// taps.
   void look();
 
-  /// Ends the run before its budget, for this reason.
+  /// Ends the run for this reason, before the tap budget is spent.
   void stop(const std::string& reason) { monitor_.stop(reason); }
 
-  /// Returns the counts so far, without state and errors: builds and computes nothing.
+  /// Returns the counts so far, without state and errors. Builds and updates no model.
   const RunResult& counts() const { return monitor_.counts(); }
-  /// Returns the result as of now, with the errors of the final models where the truth is known.
+  /// Returns the result after the taps so far, with the errors of the final models if the truth is known.
   RunResult result();
 
-  /// Returns the acquisition's scores as of now, M values.
+  /// Returns the acquisition's scores after the taps so far, M values.
   Eigen::VectorXd scores();
-  /// Returns what is known of a tap that choose_next() chose. The backend describes it; no model is built.
+  /// Returns a preview of a tap that choose_next() chose: the predicted height and the backend's description. Builds no
+  /// model.
   Preview preview(const TapRecord& tap) const;
-  /// Returns the readers of the run, and its models.
+  /// Returns the readers of the run, and the models that they need.
   const RunPlan& plan() const { return plan_; }
 
   Belief& belief() { return *belief_; }
   const Belief& belief() const { return *belief_; }
-  /// Returns the true scene as it stands now; null if it is not known.
+  /// Returns the true scene in its current state; null if the truth is not known.
   const Scene* truth() { return monitor_.truth(*belief_); }
   const Scene& scene() const { return *scene_; }
   const Backend& backend() const { return *backend_; }
@@ -100,16 +105,16 @@ class Experiment final {
  private:
   std::shared_ptr<Backend> make_backend(const ExperimentSetup& setup);
   ReadPlan make_plan(const ReadPlan& more) const;
-  /// Begins the stages of a tap by `source`.
+  /// Begins all stages that must have begun for a tap chosen by `source`.
   void begin_stages(Source source);
   void draw_candidates();
-  /// Shows the belief to the backend, after the first tap.
+  /// Passes the belief to Backend::show(). Does nothing before the first tap.
   void show();
-  /// Brings the models of all begun stages up to date, in arrays too, and draws the lines of the next tap.
+  /// Updates the models and arrays of all begun stages, and draws the lines for the next tap.
   void infer();
-  /// Fills in all of a request that follows from the taps before.
+  /// Sets the fields of a request that follow from the previous taps.
   void complete(TapRequest& request) const;
-  /// Begins the stages of the next tap, and brings the models up to date.
+  /// Begins the stages of the next tap, and updates the models and arrays.
   void prepare(const TapOverride* override);
   bool is_stop_wished() const { return context_.interrupted != nullptr && context_.interrupted->load(); }
   TapResult make_tap(const TapRequest& request);
@@ -123,13 +128,13 @@ class Experiment final {
   std::shared_ptr<Belief> belief_;
   std::shared_ptr<Backend> backend_;
   TapSelector selector_;
-  std::optional<MotionSelector> motions_;  ///< if the backend has several
+  std::optional<MotionSelector> motions_;  ///< only if the backend has several motions
   RunPlan plan_;
   RunMonitor monitor_;
-  std::optional<TapLine> previous_;  ///< of the tap before
-  std::string unreached_;            ///< of the drawn lines: see TapRecord
-  int failed_in_a_row_ = 0;          ///< of this process: somebody has looked at the arm before a run is resumed
-  int refused_in_a_row_ = 0;         ///< taps whose numbers are not finite
+  std::optional<TapLine> previous_;  ///< line of the previous tap
+  std::string unreached_;            ///< drawn lines that the backend rejected; see TapRecord::unreached
+  int failed_in_a_row_ = 0;   ///< only of this process, because a person has checked the arm before a run is resumed
+  int refused_in_a_row_ = 0;  ///< taps with an impossible result: see is_refused()
 };
 
 }  // namespace palpate

@@ -24,7 +24,7 @@ struct InitialOptions : Options {
   void list(Fields& fields) override;
 };
 
-/// An absent option has the default of the belief. At most one option is given.
+/// If both options are absent, the belief uses its own default. At most one of both may be set.
 struct CandidateOptions : Options {
   std::optional<std::int64_t> count;
   std::optional<double> spacing;
@@ -47,7 +47,7 @@ struct LogOptions : Options {
   void list(Fields& fields) override;
 };
 
-/// Choice of a tap from the scores.
+/// Rules for the choice of a tap by its score.
 struct ChoiceOptions : Options {
   enum class Fallback { uncertainty, none };
   enum class Repeat { forbid, allow };
@@ -87,10 +87,10 @@ std::string belief_option(const ExperimentOptions& options, const char* path);
 /// Returns the type of the backend's motion; "" for a backend without one.
 std::string motion_name(const ExperimentOptions& options);
 
-/// Returns the keys of a config that are not among these options, with their descriptions.
+/// Returns the top-level keys of a config that are not among ExperimentOptions, with their descriptions.
 std::vector<Field> keys_beside_options();
 
-/// Properties of all config keys that composing a config needs.
+/// Returns the properties of all config keys that the composition of configs needs.
 class ConfigKeys;
 const ConfigKeys& config_keys();
 

@@ -13,10 +13,12 @@
 namespace palpate {
 namespace {
 
-/// Weight of a motion's own expectations, in taps, and the expected share of contacts.
+/// Weight of a motion's expected values, as a number of taps (kPriorTaps), and the expected share of taps that make
+/// contact.
 constexpr double kPriorTaps = 5.0;
 constexpr double kPriorContacts = 0.95;
-/// Metres: contacts farther from the desk's height are not with the desk.
+/// Largest difference, metres, between the desk's height and the height of a contact that counts as a contact with the
+/// desk.
 constexpr double kMostOffDesk = 0.02;
 
 }  // namespace

@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: MIT
 // Trades speed for accuracy tap by tap: selects the motion of the backend with the most information per second.
 //
-// A tap reveals whether there is an object. This information is the entropy of the footprint at its position, in bits,
-// for any motion. If there is an object, the tap also reveals its height. With a height variance v and a motion of
-// standard deviation d, this information is log2(1 + v / d^2) / 2 bits (Cover and Thomas 2006, section 9.1). The sum is
-// multiplied by the motion's contact probability and divided by its mean time over both cases. Times, deviations and
-// contact probabilities start at the motion's own expectations, and are updated by its taps. So the fast motion follows
-// an outline, and the precise one is used where only the height is unknown.
+// A tap reveals whether there is an object. This information is the same for all motions: the entropy of the footprint
+// at the position of the tap, in bits. If there is an object, the tap also reveals its height. If the height has the
+// variance v and the motion has the standard deviation d, this information is log2(1 + v / d^2) / 2 bits (Cover and
+// Thomas 2006, section 9.1). The total information is multiplied by the motion's contact probability, and divided by
+// its mean duration over both cases, object and desk. Durations, standard deviations and contact probabilities begin
+// with expected values, and are updated by the taps of the motion. So the fast motion is used along an outline, and the
+// precise motion is used where only the height is unknown.
 //
-// The position is chosen before, by the information of a tap, not per second. Near and tall positions are cheap to tap.
-// But positions at the edge of an outline, which cost more, reduce the errors faster per second.
+// The position is chosen before the motion, by the information per tap, not per second. Positions near the previous tap
+// and on tall objects take less time. But taps at the edge of an outline, although they take longer, reduce the errors
+// faster per second.
 #pragma once
 
 #include "experiment/tap_record.hpp"
@@ -24,16 +26,18 @@ namespace palpate {
 
 class MotionSelector {
  public:
-  /// `desk`: its height, metres.
+  /// `desk`: height of the desk, metres.
   MotionSelector(std::shared_ptr<const Motions> motions, double desk);
 
-  /// Returns the quantities that are read at the chosen candidate.
+  /// Returns the quantities that choose() reads at the chosen candidate.
   static QuantitySet reads();
 
-  /// Chooses the motion of a tap with known line and predecessor, and stores the motion and its expected time in `tap`.
+  /// Chooses the motion of `tap`, whose line and previous line are already set. Stores the motion and its expected
+  /// duration in `tap`.
   void choose(const Belief& belief, TapRecord& tap) const;
 
-  /// Returns the standard deviation that a motion adds to the standard deviation of the most precise motion, metres.
+  /// Returns the square root of the difference between the variance of a motion's heights and the variance of the most
+  /// precise motion's heights, metres.
   double height_noise(int motion) const;
 
   /// Updates the statistics with a tap that `belief` already contains. Throws Error for an unknown motion, which means
@@ -45,7 +49,7 @@ class MotionSelector {
   struct Shown {
     int taps = 0;
     int contacts = 0;
-    double late = 0.0;     ///< seconds beyond the expected ones for the reported height, summed over all contacts
+    double late = 0.0;     ///< sum over all contacts of the measured minus the expected duration, seconds
     double squares = 0.0;  ///< sum of squared heights of desk contacts relative to the desk, square metres
     int on_desk = 0;
   };

@@ -62,9 +62,10 @@ std::vector<int> draw_lattice(std::size_t count, const CandidateGrid& candidates
   return design;
 }
 
-/// Visits the allowed candidates for which worth(score, candidate) holds, in no particular order. A block is skipped if
-/// its highest score at its first index is not worth a visit. In each group of four thousand candidates the block with
-/// the highest score comes first, because a visit there may make visits to the others unnecessary.
+/// Visits the allowed candidates for which worth(score, candidate) holds, in no particular order. A block of kBlock
+/// candidates is skipped if worth() does not hold for the highest score of the block with the first index of the block.
+/// In each group of kBlock blocks, the block with the highest score is first, because its visits may make visits to the
+/// other blocks unnecessary.
 template <class Worth, class Visit>
 void for_allowed(const Eigen::VectorXd& scores, const Allowed& allowed, const Worth& worth, const Visit& visit) {
   constexpr Eigen::Index kBlock = loops::kScores;
@@ -94,7 +95,7 @@ void for_allowed(const Eigen::VectorXd& scores, const Allowed& allowed, const Wo
   look(blocks * kBlock, scores.size());
 }
 
-/// Returns whether is(score) holds for an allowed candidate.
+/// Returns whether is(score) holds for at least one allowed candidate.
 template <class Is>
 bool any_allowed(const Eigen::VectorXd& scores, const Allowed& allowed, const Is& is) {
   for (Eigen::Index i = 0; i < scores.size(); ++i) {
@@ -114,8 +115,8 @@ std::vector<int> initial_design(const InitialOptions& options, const CandidateGr
   if (options.design == Design::random) return draw_random(static_cast<int>(count), candidates.size(), random);
   std::vector<int> design = options.design == Design::sobol ? draw_sobol(count, candidates, area, random)
                                                             : draw_lattice(count, candidates, area);
-  // A design nearly as fine as the candidates hits some of them twice. The free candidates then fill it in order of
-  // index.
+  // If the design has nearly as many points as there are candidates, several points may have the same nearest
+  // candidate. The design is then filled with unused candidates, in the order of their indices.
   for (int i = 0; design.size() < count; ++i) {
     if (std::find(design.begin(), design.end(), i) == design.end()) design.push_back(i);
   }

@@ -37,7 +37,7 @@ const Scene* RunMonitor::truth(Belief& belief) {
 }
 
 void RunMonitor::take_in(const TapRecord& tap, Belief& belief) {
-  // Uses the scene before this tap, because a push by it moves the objects only afterwards.
+  // Uses the scene before this tap, because a push moves the objects only after its tap.
   if (const Scene* const scene = truth(belief); scene != nullptr && tap.is_contact()) note_object(tap, *scene);
   first_labels_.push_back(tap.reading && tap.reading->on_object);
   ++result_.taps;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Counts of a run, and the truth at its taps. It makes no decisions.
+// Counts the taps of a run and determines the true scene at each tap. The monitor makes no decisions.
 #pragma once
 
 #include "experiment/tap_record.hpp"
@@ -18,14 +18,16 @@ class RunMonitor {
   /// `is_truth`: whether the taps are made on the config's scene. `scene` must outlive the monitor.
   RunMonitor(const Scene& scene, bool is_truth);
 
-  /// Counts a tap that `belief` already contains. Contacts count by their current readings.
+  /// Counts a tap that `belief` already contains. Object and desk contacts are counted again for all taps, by their
+  /// current readings.
   void take_in(const TapRecord& tap, Belief& belief);
   void stop(const std::string& reason) { result_.stop_reason = reason; }
 
   /// Returns the counts so far, without state and errors.
   const RunResult& counts() const { return result_; }
 
-  /// Stores in `tap` the state of the belief before it, and the true label of its line.
+  /// Stores in `tap` the state and the errors of the belief before the tap, and whether the line really ends on an
+  /// object.
   void describe(TapRecord& tap, Belief& belief);
 
   /// Returns the scene in its current state; null if unknown.
@@ -39,10 +41,10 @@ class RunMonitor {
 
   const Scene& scene_;
   bool is_truth_;
-  std::unique_ptr<const Scene> pushed_;  ///< the scene, if objects were pushed
-  int truth_taps_ = -1;                  ///< number of taps when the truth was last given to the belief
+  std::unique_ptr<const Scene> pushed_;  ///< current scene if objects were pushed, else null
+  int truth_taps_ = -1;                  ///< number of taps when the belief last received the truth; -1 for never
   RunResult result_;
-  std::vector<bool> first_labels_;      ///< per tap: whether it was read as on an object at that time
+  std::vector<bool> first_labels_;      ///< per tap: whether its first reading was a contact with an object
   std::vector<ObjectTouches> touches_;  ///< per object
 };
 

@@ -10,23 +10,25 @@
 namespace palpate {
 namespace {
 
-// In a test with 200 cubes of 3 cm, an inexact arm found 96 % within 60 taps, also with twice as many discs, but only
-// 92 % with a quarter of them. The paper's objects are found at tap 1.8 on average with any of these numbers.
+// In a test with 200 cubes of 3 cm, an inexact arm found 96 % of the cubes within 60 taps. It also found 96 % with
+// twice as many discs, but only 92 % with a quarter of the discs. The objects of Sun and Min 2021 are found at tap 1.8
+// on average, with any of these numbers of discs.
 constexpr int kDiscs = 16000;
 constexpr int kWhole = 1000;
-// Errors of an arm of Baxter's class: standard deviation of its tip's position, metres, and probability to miss a
-// contact. With these errors, a perfect arm finds the same cubes as soon as without, because the margin covers corners
-// of boxes, which discs lack.
+// Errors of an arm of Baxter's class: standard deviation of the tip's position, metres (kBlur), and probability to miss
+// a contact (kMissed). The search assumes these errors for every arm. A perfect arm finds the same cubes equally soon
+// with and without this assumption. The margin around the discs then covers the corners of boxes.
 constexpr double kBlur = 0.002;
 constexpr double kMissed = 0.02;
 constexpr double kFar = 5.0 * kBlur;
 
-/// Returns the probability that a tap this far inside an edge (metres, below 0 outside) finds nothing.
+/// Returns the probability that a tap finds no object at the distance `inside` inside of the object's edge, metres;
+/// negative outside.
 double passed_by(double inside) { return 1.0 - (1.0 - kMissed) * 0.5 * math::erfc(-inside / (kBlur * std::sqrt(2.0))); }
 
 double between(double least, double most, Random& random) { return least + (most - least) * random.uniform(); }
 
-// Without SSE4.1, std::ceil and std::floor are function calls.
+// Replace std::ceil and std::floor, which are slow function calls without SSE4.1.
 int rounded_up(double t) {
   const int whole = static_cast<int>(t);
   return whole + (whole < t ? 1 : 0);
@@ -103,7 +105,7 @@ int SearchDesign::next(const Allowed& allowed) {
 }
 
 void SearchDesign::weigh(const Disc& disc, int weight) {
-  // A disc cuts a row of candidates in one piece.
+  // The candidates of a row that lie in a disc are consecutive.
   const double across = step_of(candidates_.xs);
   const double along = step_of(candidates_.ys);
   const Span rows(disc.y - disc.radius, disc.y + disc.radius, candidates_.ys(0), along, candidates_.rows);

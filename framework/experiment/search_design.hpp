@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The initial design `search`: finds an object of which only the smallest size is known.
+// The initial design `search`: finds an object whose position, shape and size are unknown, except for its smallest
+// width.
 #pragma once
 
 #include "experiment/policy.hpp"
@@ -13,36 +14,40 @@
 
 namespace palpate {
 
-/// A greedy search. It draws 16000 discs, each a hypothesis of the hidden object. The next tap goes where the discs
-/// have the largest total weight. After each tap that finds nothing, the weight of every disc near it is multiplied by
-/// the probability that the tap missed such an object. The tap may have landed outside the edge, or the arm may have
-/// felt nothing. So a tap of an arm with errors of millimetres does not rule out objects that it missed narrowly. If
-/// positions have equal weight, for example without discs, the tap goes to the middle of the largest gap, farthest from
-/// all taps and from the edge of the area.
+/// A greedy search. It draws 16000 discs, each a hypothesis of the hidden object. The next tap is made where the discs
+/// have the largest total weight. After each tap that finds no object, the search computes for every nearby disc the
+/// probability that the tap would have missed an object with this outline, and multiplies the weight of the disc by
+/// this probability. There are two causes of a miss: the tap lands outside the edge because of position errors, or the
+/// arm does not detect the contact. So a tap with errors of millimetres does not rule out an object whose edge is
+/// within these errors. Several positions may have the same weight, for example when no discs are left. Then the
+/// position farthest from all taps and from the edge of the area is chosen.
 ///
-/// Diameters lie between the smallest object and the area's shorter side, uniformly in their logarithm. With only the
-/// smallest, the search would scan the area in narrow rows and find large objects late. Large discs send the first taps
-/// to the middle, which most large objects cover. Discs also suffice for boxes and rods: rectangles of all angles and
-/// proportions find none of them sooner, up to the noise of 1000 placements.
+/// Diameters lie between the smallest width and the area's shorter side, uniformly in their logarithm. With only the
+/// smallest diameter, the search would scan the area in narrow rows and find large objects late. Large discs lead the
+/// first taps to the middle of the area, which most large objects cover. Discs also suffice for boxes and rods. In
+/// tests with 1000 random placements, hypotheses that were rectangles of all angles and proportions did not find these
+/// objects sooner.
 ///
-/// Whoever misses in the same places is sent to the same next one: its state is the seed and the places looked at.
+/// The next position depends only on the seed and the positions of the earlier taps. So runs whose taps missed at the
+/// same positions choose the same next position.
 class SearchDesign {
  public:
   /// `smallest`: metres, above 0 and below both sides of the area. `candidates` form a grid and outlive the search.
   SearchDesign(double smallest, const CandidateGrid& candidates, const Area& area, Random random);
 
-  /// Adds a tap without a contact on an object. An unreachable position counts, too: then the arm does not try its
-  /// neighbours at once, and the discs beside it stay.
+  /// Adds the position of a tap, which the search treats as a position without an object. An unreachable position is
+  /// added, too, so that the next tap is not at a neighbouring position that is probably unreachable as well. Discs
+  /// that are not near the position keep their weights.
   void look(const Target& place);
 
-  /// Returns the next candidate to tap, one of the `allowed`; the first of equally good ones. At least one must be
-  /// allowed.
+  /// Returns the next candidate to tap, one of the `allowed` candidates. The first of equally good candidates is
+  /// chosen. At least one candidate must be allowed.
   int next(const Allowed& allowed);
 
  private:
   struct Disc {
     double x, y, radius;
-    int weight;  ///< probability that all taps so far missed it, in thousandths
+    int weight;  ///< probability that all taps so far would have missed this disc, in thousandths
   };
 
   /// Draws the discs at the first call of next(), so an unused search costs nothing.
@@ -50,7 +55,7 @@ class SearchDesign {
   void strike_off(const Target& place);
   /// Adds `weight` to the candidates in a disc.
   void weigh(const Disc& disc, int weight);
-  /// Returns the total weight of the discs that contain each candidate.
+  /// Returns for each candidate the total weight of the discs that contain it.
   std::vector<int> weights() const;
   /// Returns the radius of the largest disc around a position that lies in the area and contains no tap.
   double room(const Target& place) const;
@@ -60,9 +65,9 @@ class SearchDesign {
   Area area_;
   Random random_;
   std::vector<Disc> discs_;  ///< discs with a positive weight
-  std::vector<int> rises_;   ///< differences of weights() along each row, with 0 before and after the row
+  std::vector<int> rises_;   ///< per row: differences between neighbouring weights(); the weight outside the row is 0
   std::vector<Target> looked_;
-  std::size_t struck_off_ = 0;  ///< number of looked_ already applied to the discs; applied only by next()
+  std::size_t struck_off_ = 0;  ///< number of positions in looked_ that next() has already applied to the discs
 };
 
 }  // namespace palpate

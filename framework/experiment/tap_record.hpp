@@ -18,7 +18,7 @@
 
 namespace palpate {
 
-/// Prefix of the reason of a fallback if the scores of a calling program led to it.
+/// Prefix of the reason of a fallback that was necessary because of a calling program's scores.
 constexpr const char* kOfCaller = "of the caller's scores: ";
 
 /// One tap: the request, the choice, the state of the models before it, and the result.
@@ -40,9 +40,9 @@ struct TapRecord {
   /// the first line. Digits after the last rejected line are left out.
   std::string unreached{};
 
-  BeliefState state;                                         ///< state before the tap
-  Errors errors;                                             ///< errors of the belief in that state
-  std::optional<bool> true_on_object;                        ///< nullopt if the truth is not known
+  BeliefState state;                   ///< state before the tap
+  Errors errors;                       ///< errors of the belief in that state
+  std::optional<bool> true_on_object;  ///< whether the line ends on an object; nullopt if the truth is not known
   std::optional<double> shown_expected_rmse = std::nullopt;  ///< metres, as displayed before the tap
 
   int number() const { return request.number; }
@@ -59,7 +59,7 @@ struct TapRecord {
 /// Replacement for the strategy's choice: the scores of a caller, one per candidate, or a recorded choice.
 struct TapOverride {
   Eigen::VectorXd scores;           ///< finite; empty if there is a `choice`
-  std::optional<TapRecord> choice;  ///< line, source, why and all fields of the score
+  std::optional<TapRecord> choice;  ///< has line, source, `why` and all fields of the score
 };
 
 /// Stop reason of a run that its user interrupted. Such a run has no summary and can be resumed.
@@ -79,7 +79,7 @@ struct Relabelled {
   bool on_object = false;  ///< current label
 };
 
-/// Contacts on the cells of one object, with any label.
+/// Contacts at positions on one object of the true scene, whatever their labels.
 struct ObjectTouches {
   int taps = 0;
   std::optional<int> first_tap;

@@ -77,7 +77,7 @@ void TapSelector::allow(const Belief& belief) {
 
 bool TapSelector::choose_initial(const Belief& belief, TapRecord& tap) {
   tap.request.source = Source::initial;
-  tap.candidate = 0;  // index for drawn lines
+  tap.candidate = 0;  // drawn lines: the first
   if (belief.candidates().fixed) {
     const std::optional<int> again = second_look(belief);
     tap.candidate = again ? *again : search_ ? search_->next(allowed_) : initial_[taps_.size()];
@@ -113,7 +113,7 @@ bool TapSelector::choose(Belief& belief, TapRecord& tap, const TapOverride* over
   const auto pick = [&](const Eigen::VectorXd& of, double scale) {
     return pick_best(of, allowed_, scale, options_.choice.tie_tolerance);
   };
-  // The scale of a caller's scores before the first tap is not known.
+  // The typical size of a caller's scores is not known, so the scale is 0.
   Pick picked = override != nullptr ? pick(override->scores, 0.0) : pick(scores(belief), acquisition_->prior_scale());
   if (picked.flat && options_.choice.fallback == ChoiceOptions::Fallback::uncertainty) {
     tap.request.source = Source::fallback;

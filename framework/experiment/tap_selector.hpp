@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Choice of the next tap. The initial design or the search chooses first, then the acquisition's scores, with rules for
-// ties. A fallback chooses if the scores do not distinguish candidates.
+// Choice of the next tap. At first the initial design or the search chooses the taps, later the acquisition's scores,
+// with a rule for ties. A fallback chooses if the scores do not distinguish candidates.
 #pragma once
 
 #include "experiment/check_quantities.hpp"
@@ -27,7 +27,8 @@ class TapSelector {
   void add_readers(ReadPlan& plan) const;
 
   /// Returns whether the initial design chooses the next tap. A search ends with an object contact that is probably not
-  /// an outlier, or after all candidates. It taps a suspected outlier again before it continues.
+  /// an outlier, or when all candidates have been tapped. If an object contact is a suspected outlier, the search taps
+  /// its candidate again before it continues.
   bool is_starting(const Belief& belief) const;
   /// Returns the source that would choose the next tap, unless a fallback becomes necessary.
   Source next_source(const Belief& belief, const TapOverride* override) const {
@@ -36,9 +37,9 @@ class TapSelector {
     return is_starting(belief) ? Source::initial : Source::acquisition;
   }
 
-  /// Chooses a candidate, and stores its line, source and score in `tap`. The belief must be up to date for
-  /// next_source(); a fallback begins its own stage. Returns false if no candidate is left. `override` (may be null)
-  /// replaces the acquisition.
+  /// Chooses a candidate, and stores its line, source and score in `tap`. Requires that the stages for next_source()
+  /// have begun and their arrays are computed; a fallback begins its own stage. Returns false if no candidate is left.
+  /// `override` (may be null) replaces the acquisition.
   bool choose(Belief& belief, TapRecord& tap, const TapOverride* override);
 
   /// Returns the acquisition's scores, M values. Throws Error if a score is not finite.
@@ -52,17 +53,19 @@ class TapSelector {
   int find(const Candidates& candidates, const TapLine& line) const;
   static void begin_fallback(Belief& belief);
   bool choose_initial(const Belief& belief, TapRecord& tap);
-  /// Returns an allowed candidate with a suspected outlier that was tapped only once.
+  /// Returns an allowed candidate whose only contact is a suspected outlier on an object; nullopt if there is none.
+  /// Only for the search.
   std::optional<int> second_look(const Belief& belief) const;
-  /// Allows candidates without a tap, and candidates whose contacts are all suspected outliers or have moved.
+  /// Sets allowed_. With `repeat: forbid`, it contains candidates without a tap, and candidates whose contacts are all
+  /// suspected outliers or have moved. Candidates with a failed tap are never allowed.
   void allow(const Belief& belief);
 
   const ExperimentOptions& options_;
   Area area_;
   CandidateGrid grid_;  ///< only for fixed candidates
   std::shared_ptr<Acquisition> acquisition_;
-  std::vector<int> initial_;            ///< candidates of a design that counts its taps
-  std::optional<SearchDesign> search_;  ///< the other design
+  std::vector<int> initial_;            ///< candidates of a design with a fixed count
+  std::optional<SearchDesign> search_;  ///< the design `search`
   Eigen::VectorXd scores_;
   struct Tapped {
     int candidate;

@@ -11,7 +11,7 @@ namespace palpate {
 
 inline constexpr std::string_view kHexDigits = "0123456789abcdef";
 
-/// Returns whether the line with this index, from 0, was rejected.
+/// Returns whether the line with this index, counted from 0, was rejected.
 inline bool is_unreached(const std::string& marks, std::size_t line) {
   return line / 4 < marks.size() && (kHexDigits.find(marks[line / 4]) & (std::size_t{8} >> line % 4)) != 0;
 }

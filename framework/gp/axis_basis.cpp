@@ -12,7 +12,7 @@
 namespace palpate {
 namespace {
 
-/// Covariances between the positions along one axis.
+/// Covariance matrix of the positions along one axis, computed column by column.
 class AxisCovariances {
  public:
   AxisCovariances(const Kernel& kernel, int axis, const Eigen::VectorXd& positions)
@@ -31,7 +31,8 @@ class AxisCovariances {
   }
   Eigen::Index mirror_image(Eigen::Index i) const { return size() - 1 - i; }
 
-  /// Returns whether positions and kernel are symmetric, up to rounding of the positions. Compares three columns.
+  /// Returns whether positions and kernel are symmetric, up to rounding of the positions. Compares only three columns
+  /// with their mirror images.
   bool is_mirrored() const {
     if (size() < 2) return false;
     for (const Eigen::Index i : {Eigen::Index{0}, size() / 3, size() / 2}) {
@@ -39,7 +40,7 @@ class AxisCovariances {
       const Eigen::VectorXd here = column(i);
       if ((here - there).cwiseAbs().maxCoeff() > 64.0 * kEpsilon * here.cwiseAbs().maxCoeff()) return false;
     }
-    // All positions have to be symmetric, including positions between the compared columns.
+    // The positions between the compared columns must be symmetric, too.
     const Eigen::VectorXd middle = positions_ + positions_.reverse();
     return (middle.array() - middle(0)).abs().maxCoeff() <= 16.0 * kEpsilon * positions_.cwiseAbs().maxCoeff();
   }
@@ -50,14 +51,15 @@ class AxisCovariances {
   const Eigen::VectorXd& positions_;
 };
 
-/// Part of the covariances K along an axis: k(h, h') + sign k(h, mirror image of h') over the first `count` positions.
-/// Sign 1 is the even part, sign -1 the odd part; sign 0 with all positions is K.
+/// Part of the covariance matrix K along an axis: k(h, h') + sign * k(h, mirror image of h') for h and h' among the
+/// first `count` positions. With the sign 1 this is the even part, with -1 the odd part. With 0 and all positions, it
+/// is K itself.
 struct Part {
   const AxisCovariances& covariances;
   Eigen::Index count;
   double sign;
 
-  /// Whether the last position is its own mirror image.
+  /// Returns whether the last position is its own mirror image.
   bool has_middle() const { return sign != 0.0 && covariances.mirror_image(count - 1) == count - 1; }
 
   /// Computes columns of the Cholesky factor with diagonal pivoting, until the residual variance at each position is at
@@ -90,8 +92,8 @@ struct Part {
 
   /// Computes an orthonormal basis of the span of `columns`, extended to all positions by symmetry.
   Eigen::MatrixXd orthonormal(const Eigen::MatrixXd& columns) const {
-    // Each position counts for itself and its mirror image. Halves that are orthonormal with these weights give
-    // orthonormal whole directions.
+    // Each position counts for itself and for its mirror image. If half directions are orthonormal with these weights,
+    // the directions over all positions are orthonormal, too.
     Eigen::VectorXd weights = Eigen::VectorXd::Constant(count, sign == 0.0 ? 1.0 : std::sqrt(2.0));
     if (has_middle()) weights(count - 1) = 1.0;
     const Eigen::HouseholderQR<Eigen::MatrixXd> qr(weights.asDiagonal() * columns);
@@ -104,7 +106,7 @@ struct Part {
   }
 };
 
-/// Returns the even and the odd part under symmetry, else the whole.
+/// Returns the even and the odd part if there is symmetry, else the whole matrix as one part.
 std::vector<Part> parts_of(const AxisCovariances& covariances) {
   if (!covariances.is_mirrored()) return {{covariances, covariances.size(), 0.0}};
   const Eigen::Index half = (covariances.size() + 1) / 2;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Low-rank basis of the covariances of a kernel along one axis of the candidates.
+// Low-rank basis of a kernel's covariance matrix along one axis of the candidate grid.
 #pragma once
 
 #include <palpate/kernel.hpp>
@@ -8,23 +8,24 @@
 
 namespace palpate {
 
-/// Orthonormal basis of the covariances of a kernel between the positions along one axis.
+/// Orthonormal basis of the covariance matrix of a kernel between the positions along one axis.
 struct AxisBasis {
-  Eigen::MatrixXd directions;  ///< positions x r
-  /// Whether positions and kernel are symmetric about the middle. Then the first `even` directions are even functions
-  /// of the position, the others odd. Without symmetry, all directions count as even.
+  Eigen::MatrixXd directions;  ///< one row per position, one column per direction
+  /// Whether positions and kernel are symmetric about the middle. If so, the first `even` directions are even functions
+  /// of the position, and the others are odd functions. If not, all directions count as even.
   bool mirrored = false;
   int even = 0;
 
   int rank() const { return static_cast<int>(directions.cols()); }
 };
 
-/// Computes a basis whose residual variance is at most `tolerance` times the largest variance, at each of the G
-/// positions. Cholesky factorisation with diagonal pivoting finds the span (Harbrecht, Peters and Schneider 2012), QR
-/// factorisation the basis. Under symmetry, even and odd part are factorised separately. O(G r^2).
+/// Computes a basis for G positions. At each position, the variance outside of its span is at most `tolerance` times
+/// the largest variance. A Cholesky factorisation with diagonal pivoting finds the span (Harbrecht, Peters and
+/// Schneider 2012), and a QR factorisation finds the basis. With symmetry, the even part and the odd part are
+/// factorised separately. Cost for rank r: O(G r^2).
 AxisBasis axis_basis(const Kernel& kernel, int axis, const Eigen::VectorXd& positions, double tolerance);
 
-/// Returns the rank of this basis, but at most `most`.
+/// Returns the rank of the basis that axis_basis() computes, or `most` if the rank is larger.
 int axis_rank(const Kernel& kernel, int axis, const Eigen::VectorXd& positions, double tolerance, int most);
 
 }  // namespace palpate

@@ -8,7 +8,8 @@
 
 namespace palpate {
 
-/// columns x rows positions, row by row: index = row * columns + column. x increases with the column, y with the row.
+/// Positions in a grid of `columns` x `rows`, stored row by row: index = row * columns + column. x increases with the
+/// column, y with the row.
 struct CandidateGrid {
   int columns = 0;
   int rows = 0;

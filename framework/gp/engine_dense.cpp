@@ -7,7 +7,7 @@ namespace {
 /// Largest number of reserved values, 1 GiB. Reserved memory costs nothing until it is used.
 constexpr double kMostReserved = 1.0 * (1 << 27);
 
-/// Blocks per call of the kernel, because the overhead of a call equals the time of ten candidates.
+/// Number of blocks per call of the kernel. A call has an overhead that equals the time of about ten candidates.
 constexpr int kBlocksPerCall = 4;
 constexpr Eigen::Index kCandidatesPerCall = Eigen::Index{kBlocksPerCall} * loops::kBlock;
 
@@ -48,7 +48,7 @@ class Dense final : public Engine {
   void clear() override { rows_.clear(); }
 
   loops::Panels rows_;                            ///< V, one panel per block of candidates
-  std::vector<loops::AlignedArray> covariances_;  ///< scratch per worker: of a group of blocks with the last tap
+  std::vector<loops::AlignedArray> covariances_;  ///< scratch per worker: covariances of blocks with the last tap
 };
 
 }  // namespace

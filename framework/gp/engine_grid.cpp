@@ -6,8 +6,8 @@ namespace {
 
 using loops::kLine;
 
-/// Number of strips that share the covariances of the columns while these are in the cache. A group is one part for the
-/// workers.
+/// Number of strips in a group. The strips of a group use the covariances of the columns while these are in the cache.
+/// Each worker takes a whole group at a time.
 constexpr int kGroup = 4;
 
 class Grid final : public Engine {
@@ -62,7 +62,7 @@ class Grid final : public Engine {
     to.append(column.data());
   }
 
-  /// Computes diag(c) times the covariances of a strip's rows.
+  /// Multiplies the covariances of a strip's rows with each tap by the tap's entry of c.
   static void scale(const double* rows, const VectorView& by, double* out) {
     using Rows = Eigen::Array<double, loops::kStripRows, Eigen::Dynamic>;
     const Eigen::Map<const Rows> from(rows, loops::kStripRows, by.size());

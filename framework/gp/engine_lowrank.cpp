@@ -12,14 +12,14 @@ using loops::kLine;
 constexpr int kRows = loops::kStripRows;
 constexpr std::ptrdiff_t kTile = std::ptrdiff_t{kRows} * loops::kPanelLines * kLine;  ///< numbers in a full tile
 
-/// One axis of the grid: the basis of its covariances, and the newest tap in this basis.
+/// One axis of the grid: the basis of its covariance matrix, and the newest tap in coordinates of this basis.
 struct Axis {
   const Eigen::VectorXd& positions;
   AxisBasis basis;
-  Eigen::VectorXd covariance;   ///< covariance of the newest tap with the positions; after take() its residual
+  Eigen::VectorXd covariance;   ///< covariances of the newest tap; after take(), their part outside of the basis
   Eigen::VectorXd coordinates;  ///< coordinates of the covariance in the basis
-  double largest = 0.0;         ///< largest covariance
-  double residual = 0.0;        ///< largest covariance outside the span of the basis
+  double largest = 0.0;         ///< largest covariance of the newest tap
+  double residual = 0.0;        ///< largest part of these covariances outside of the span of the basis
 
   Axis(const Kernel& kernel, int axis, const Eigen::VectorXd& along, double tolerance)
       : positions(along),
@@ -36,7 +36,7 @@ struct Axis {
   }
 };
 
-/// v = U_y S U_x^T with S = P_y^T diag(c) P_x. The product with U_x^T takes most of the time.
+/// Computes v = U_y S U_x^T with S = P_y^T diag(c) P_x; see engine.hpp. The product with U_x^T takes most of the time.
 class Lowrank final : public Engine {
  public:
   Lowrank(const std::shared_ptr<Workers>& workers, const Kernel& kernel, const CandidateGrid& candidates, Axis x,
@@ -47,7 +47,7 @@ class Lowrank final : public Engine {
         y_(std::move(y)),
         in_x_(x_.basis.rank(), loops::kPanelLines * kLine, kLine),
         in_y_(y_.basis.rank(), kRows, kRows),
-        // The left half of the grid if the basis is symmetric.
+        // Contains only the left half of the grid if the basis is symmetric.
         basis_x_(x_.basis.mirrored ? (candidates.columns + 1) / 2 : candidates.columns, loops::kPanelLines * kLine,
                  kLine),
         basis_y_(candidates.rows, loops::kPanelLines * kLine, kLine),
@@ -104,7 +104,7 @@ class Lowrank final : public Engine {
 
   /// Stores the covariance error of the newest tap.
   void store_error() {
-    // A kernel may have an error of 8 ulp with any engine (kernel.hpp).
+    // An error of 8 ulp is subtracted, because the kernel may have this error with any engine (kernel.hpp).
     constexpr double kKernelError = 8.0 * std::numeric_limits<double>::epsilon();
     const double residual = x_.residual * y_.largest + x_.largest * y_.residual + x_.residual * y_.residual;
     const double error = std::max(0.0, residual - kKernelError * x_.largest * y_.largest);
@@ -112,7 +112,7 @@ class Lowrank final : public Engine {
     errors_(in_x_.rows() - 1) = error;
   }
 
-  /// Computes S^T in strips of r_x, from S = P_y^T diag(c) P_x in strips of r_y.
+  /// Computes S = P_y^T diag(c) P_x strip by strip along the rows of S, and stores S^T in strips along the rows of S^T.
   void form_shares(const VectorView& inverse) {
     const int depth = in_x_.rows();
     const auto needed = static_cast<std::size_t>(depth) * kRows;
@@ -127,7 +127,8 @@ class Lowrank final : public Engine {
         for (std::ptrdiff_t m = 0; m < kRows; ++m) scaled[i * kRows + m] = from[i * kRows + m] * inverse(i);
       }
       loops::multiply({scaled_.data(), 0, 1, in_x_.panel(0), in_x_.stride(), depth, lines}, c);
-      // Transposes the tiles, 8 rows of S times their columns each, into columns of S^T by eights.
+      // Copies the tiles of S, each with 8 rows, to S^T: every 8 numbers in a row of S become a part of a column of
+      // S^T.
       for (int line = 0; line < lines; ++line) {
         const int panel = line / loops::kPanelLines;
         const std::ptrdiff_t width = in_x_.width(panel);
@@ -139,14 +140,14 @@ class Lowrank final : public Engine {
     }
   }
 
-  /// Computes S^T U_y^T: for each row of the grid, its share of each direction along x.
+  /// Computes S^T U_y^T: the coefficient of each direction along x for each row of the grid.
   void form_rows() {
     loops::multiply({shares_by_x_.data(), static_cast<std::size_t>(in_y_.padded()) * kRows, in_x_.padded() / kRows,
                      basis_y_.panel(0), basis_y_.stride(), basis_y_.rows(), basis_y_.padded() / kLine},
                     rows_.data());
   }
 
-  /// Copies the shares of a strip's rows, direction by direction.
+  /// Copies the coefficients of a strip's rows, direction by direction.
   void gather(int strip, double* out) const {
     const int row = strip * kRows;
     const int panel = row / (loops::kPanelLines * kLine);
@@ -162,7 +163,7 @@ class Lowrank final : public Engine {
 
   Axis x_;
   Axis y_;
-  Eigen::VectorXd errors_;  ///< errors of covariances, one per tap, with reserved memory
+  Eigen::VectorXd errors_;  ///< errors of covariances: one per tap, then reserved memory
   int reserved_ = 0;
   loops::Panels in_x_;                  ///< P_x, one row per tap
   loops::Panels in_y_;                  ///< P_y

@@ -42,7 +42,8 @@ bool Factor::append(const VectorView& covariance, double diagonal) {
 }
 
 void Factor::inverse_row(int i, VectorOut out) {
-  // c^T L = e_i^T, so L^T c = e_i: a solution with the leading block of L^T, and the last entry 1 / L_ii.
+  // Row c of L^-1 satisfies c^T L = e_i^T, so L^T c = e_i. The last entry of c is 1 / L_ii, and the leading block of
+  // L^T gives the other entries.
   const double last = 1.0 / pivot(i);
   double* const c = scratch_.data();
   Eigen::Map<Eigen::VectorXd>(c, i) = -last * row(i);
@@ -60,8 +61,8 @@ void Factor::update(Extreme& extreme, bool largest) const {
     extreme.value = pivot * pivot;
     return;
   }
-  // For vectors (s x, c) with s^2 + c^2 = 1, |L (s x, c)|^2 = [s c] [[v + a^2, a d], [a d, d^2]] [s c]^T, where a =
-  // l.x, d is the pivot and v the present value.
+  // The new singular vector has the form (s x, c) with s^2 + c^2 = 1, and |L (s x, c)|^2 = [s c] [[v + a^2, a d], [a d,
+  // d^2]] [s c]^T. Here l is the new row of L without its pivot d, a = l.x, and v is the value |L x|^2 before this row.
   const double a = row(n).dot(extreme.vector.head(n));
   const double angle = 0.5 * math::atan2(2.0 * a * pivot, extreme.value + a * a - pivot * pivot);
   double s = math::cos(angle);
@@ -71,7 +72,8 @@ void Factor::update(Extreme& extreme, bool largest) const {
   if (largest) {
     extreme.value = largest_value;
   } else {
-    // The product of both eigenvalues is the determinant v d^2, which avoids a difference of nearly equal numbers.
+    // The smaller eigenvalue is the determinant v d^2 divided by the larger eigenvalue. This avoids a difference of
+    // nearly equal numbers.
     extreme.value = extreme.value * pivot * pivot / largest_value;
     std::swap(s, c);
     s = -s;

@@ -12,12 +12,13 @@
 
 namespace palpate {
 
-/// Returns the same as Eigen's allFinite(), in a fraction of the time.
+/// Returns the same as Eigen's allFinite(), but is faster.
 inline bool all_finite(const Eigen::VectorXd& values) {
   return std::isfinite(values.sum()) || values.allFinite();  // a finite sum has finite terms
 }
 
-/// Throws Error (the run fails) unless all values of a map, named `name`, are finite. `taps`: number of taps so far.
+/// Throws Error, so that the run fails, if a value of `map` is not finite. `name`: name of the map in the message;
+/// `taps`: number of taps so far.
 inline void require_finite(const Eigen::VectorXd& map, const char* name, int taps) {
   if (all_finite(map)) return;
   throw Error("maps", fmt::format("{} is not a finite number everywhere after tap {}", name, taps),

@@ -29,7 +29,8 @@ GaussianProcess::GaussianProcess(std::shared_ptr<Kernel> kernel, std::vector<GpS
 
 void GaussianProcess::reserve(int taps) {
   if (targets_.rows() >= taps) return;
-  // Memory for the expected taps up to a limit, so that no tap allocates; beyond it, the capacity doubles.
+  // Memory for the expected number of taps is reserved, up to a limit, so that no tap allocates memory. Beyond the
+  // limit, the capacity doubles.
   constexpr int kMostExpected = 4096;
   const int capacity = std::max(std::min(maps_.settings().taps, kMostExpected), targets_.rows() == 0 ? taps : 2 * taps);
   positions_.conservativeResize(capacity, 2);
@@ -58,11 +59,12 @@ bool GaussianProcess::set_positions(const PointsView& positions) {
   return true;
 }
 
-/// Appends a tap to the factor. Returns false if the factor is then singular.
+/// Appends a tap to the factor. Returns false if the factor would become singular.
 bool GaussianProcess::append(int tap) {
   const int row = factor_.size();
   factored_.row(row) = positions_.row(tap);
-  // middleRows(), because row() has one row at compile time, which a view of points copies to the heap.
+  // middleRows() is used instead of row(): row() has one row at compile time, and the conversion to a PointsView would
+  // copy it to the heap.
   const auto position = factored_.middleRows(row, 1);
   kernel_->covariance(factored_.topRows(row), position, covariance_.head(row));
   double own = 0.0;
@@ -81,7 +83,7 @@ bool GaussianProcess::append(int tap) {
   return true;
 }
 
-/// Factorises these taps from the first on. Returns false at the first tap that makes the factor singular.
+/// Factorises these taps in their order. Returns false at the first tap that makes the factor singular.
 bool GaussianProcess::factorise(const std::vector<int>& taps) {
   factor_.clear();
   maps_.restart();
@@ -96,7 +98,8 @@ void GaussianProcess::rebuild() {
     kernel_->covariance(positions(), positions(), covariance);
     covariance.diagonal().array() += noise_ratio() * noise_ratio() / trust_.head(size_).array() + report_.jitter;
     taps = independent_rows(covariance);
-    // The pivots of both factorisations differ by rounding. The list ends at the first tap that factorise() rejects.
+    // The pivots of independent_rows() and factorise() differ by rounding. factorise() may reject a tap; this tap and
+    // all later taps are then redundant, too.
     factorise(taps);
   };
   regularise(

@@ -14,7 +14,7 @@ namespace {
 using namespace math::HWY_NAMESPACE;  // NOLINT(google-build-using-namespace)
 constexpr int kLineVectors = kLine / kLanes;
 
-// A tile of registers. Its sums, a row of B and a number of A fill the 16 or 32 registers.
+// Size of a tile of registers. The sums of a tile, one row of B and one number of A fit into the 16 or 32 registers.
 #if HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_NEON
 constexpr int kTileRows = 8;
 constexpr int kTileVectors = 3;
@@ -26,7 +26,7 @@ constexpr int kTileRows = 4;
 constexpr int kTileVectors = 2;
 #endif
 
-/// Computes kRows x kVectors registers of a product, summed over the depth. Rows of B are b_stride apart.
+/// Computes a tile of kRows x kVectors registers of a product. The distance between rows of B is `b_stride`.
 template <int kRows, int kVectors>
 HWY_INLINE void accumulate(const double* a, const double* b, int b_stride, int depth, Vector (&sum)[kRows][kVectors]) {
   for (int i = 0; i < kRows; ++i) {
@@ -45,7 +45,7 @@ HWY_INLINE void accumulate(const double* a, const double* b, int b_stride, int d
   }
 }
 
-/// Sink that stores a tile of registers. `cell` is its first cell, and its rows are `width` apart.
+/// Receives a tile of registers and stores it. `cell`: first cell of the tile; `width`: distance between its rows.
 struct Store {
   double* c;
   template <int kRows, int kVectors>
@@ -58,9 +58,9 @@ struct Store {
   }
 };
 
-/// Sink that updates the maps by a tile of v.
+/// Receives a tile of v and updates the maps.
 struct Absorb {
-  const Update update;  ///< a copy, so that the compiler need not load it again after a store
+  const Update update;  ///< a copy, so that the compiler need not load its members again after each store
 
   template <int kRows, int kVectors>
   HWY_INLINE void take(const Vector (&v)[kRows][kVectors], std::ptrdiff_t cell, int width) const {
@@ -86,7 +86,7 @@ struct Absorb {
   }
 };
 
-/// Returns the width of a tile of registers, in vectors: the largest possible divisor of `all`.
+/// Returns the width of a tile of registers, in vectors, for rows of `all` vectors. The width divides `all`.
 constexpr int vectors_of(int all) { return all % kTileVectors == 0 ? kTileVectors : (all % 2 == 0 ? 2 : 1); }
 
 /// Tiles of a product, each computed as several tiles of registers.
@@ -108,7 +108,8 @@ struct Plain {
   }
 };
 
-/// Tiles with mirror images. A tile of registers has half of the rows, because there are two sums.
+/// Tiles of a product with mirror images. A tile of registers has half of the rows, because each cell has two sums,
+/// even and odd.
 struct Mirrored {
   const MirroredProduct& whole;
   const Product& product = whole.half;
@@ -144,7 +145,8 @@ struct Mirrored {
   }
 };
 
-/// Computes all tiles panel by panel, because a strip's part of A is smaller than all panels of B.
+/// Computes all tiles panel by panel. In this order, B is read only once, and only the smaller matrix A is read for
+/// every panel.
 template <class Tiles, class Sink>
 HWY_INLINE void strips(const Tiles& tiles, const Sink& sink) {
   const Product& product = tiles.product;
@@ -203,8 +205,8 @@ void absorb_dense(const DenseRow& row, const Update& update) {
   }
 }
 
-/// Copies rows of cells. Rows of cells are padded to lines, rows of the result are not. The last vector of a row
-/// overlaps the vector before it.
+/// Copies rows of cells. Rows of cells are padded to cache lines, rows of the result are not. So the last vector of a
+/// row may overlap the vector before it.
 template <bool kMirrored>
 HWY_INLINE void read_rows(const Cells& cells, const Reading& reading) {
   const Vector least = all(reading.least);
@@ -243,8 +245,8 @@ void read(const Cells& cells, const Reading& reading) {
   cells.mirrored ? read_rows<true>(cells, reading) : read_rows<false>(cells, reading);
 }
 
-// Number of rows in a block of a packed triangle. The rows of a block have equal padded length: `before` numbers of
-// earlier columns, then the block's own triangle.
+// Number of rows in a block of a packed triangle. All rows of a block have the same padded length: `before` numbers in
+// the columns of earlier blocks, then one row of the block's own triangle.
 constexpr int kTriangleBlock = kLine;
 
 void solve_lower(const double* lower, int n, double* x) {
@@ -252,7 +254,7 @@ void solve_lower(const double* lower, int n, double* x) {
   for (int before = 0; before < n; before += kTriangleBlock) {
     const int rows = std::min(n - before, kTriangleBlock);
     const int length = before + kTriangleBlock;
-    double known[kTriangleBlock] = {};  // sum over the earlier columns of each row
+    double known[kTriangleBlock] = {};  // per row: the sum over the columns of earlier blocks
     for (int first = 0; first < rows; first += kRows) {
       Vector sum[kRows][kLineVectors];
       for (auto& of_row : sum) std::fill_n(of_row, kLineVectors, hn::Zero(kReals));
@@ -308,7 +310,9 @@ void solve_lower_transposed(const double* lower, int n, double* x) {
 }
 
 void highest(const double* from, int count, double* out) {
-  constexpr int kTogether = std::min(kScores / kLanes, 8);  // independent maxima, because each waits for the one before
+  // Number of vectors of maxima that are updated in turn, because each update waits for the previous update of the same
+  // vector.
+  constexpr int kTogether = std::min(kScores / kLanes, 8);
   for (int i = 0; i < count; ++i, from += kScores) {
     Vector most[kTogether];
 #pragma GCC unroll 8
@@ -354,7 +358,7 @@ std::size_t packed_row(int i) {
   const auto line = static_cast<std::size_t>(kLine);
   const std::size_t block = static_cast<std::size_t>(i) / line;
   const std::size_t row = static_cast<std::size_t>(i) % line;
-  // The earlier blocks have 1, 2, ... lines per row.
+  // The rows of the blocks 0, 1, ... have 1, 2, ... cache lines.
   return line * (line * block * (block + 1) / 2 + row * (block + 1));
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The loops that take most of the time of a posterior, with the widest vectors of the processor (math/highway.hpp).
+// The loops that take most of the computing time of a posterior. They use the widest vectors of the processor
+// (math/highway.hpp).
 //
 // All pointers are aligned to a cache line, and their arrays must not overlap. Results are equal on all instruction
 // sets with fused multiplication and addition, because no sum depends on the width of a vector.
@@ -9,7 +10,7 @@
 
 namespace palpate::loops {
 
-// The layout of memory is in cache lines, and does not depend on the width of the registers.
+// The layout of memory is based on cache lines. It does not depend on the width of the registers.
 constexpr int kLineBytes = 64;
 constexpr int kLine = kLineBytes / static_cast<int>(sizeof(double));  ///< numbers in a line
 constexpr int kPanelLines = 3;                                        ///< width of a matrix panel, in lines
@@ -20,7 +21,7 @@ constexpr int kScores = 64;  ///< numbers per maximum of highest()
 
 constexpr int kMeans = 3;  ///< largest number of maps of means
 
-/// Update of the cells of some strips, or of a block, by a new row v of the posterior:
+/// Update of the map cells of some strips, or of a block, by a new row v of the matrix V (see engine.hpp):
 ///     mean_k += coefficient_k v,   variance -= v^2.
 struct Update {
   int means;
@@ -29,40 +30,44 @@ struct Update {
   double* variance;
 };
 
-/// Products C = A B of several strips, 8 x depth times depth x columns each. A is stored by columns of 8 numbers. B is
-/// divided into panels of kPanelLines lines, stored by rows; the last panel may be narrower. C of each strip is a
-/// sequence of tiles, one per panel, stored by rows.
+/// Products C = A B for several strips. For each strip, A has 8 rows and `depth` columns; B has `depth` rows and is the
+/// same for all strips. A is stored by columns of 8 numbers. B is divided into panels with a width of kPanelLines cache
+/// lines, and each panel is stored by rows; the last panel may be narrower. C of a strip is a sequence of tiles, one
+/// per panel, and each tile is stored by rows.
 struct Product {
   const double* a;
-  std::size_t a_stride;  ///< numbers from one strip's A to the next
+  std::size_t a_stride;  ///< distance between the A of consecutive strips, in numbers
   int strips;
   const double* b;
-  std::size_t panel_stride;  ///< numbers from one panel of B to the next
+  std::size_t panel_stride;  ///< distance between consecutive panels of B, in numbers
   int depth;
-  int lines;  ///< width of B
+  int lines;  ///< width of B, in cache lines
 };
 
-/// Product on a grid that is symmetric in its columns. The first `even` rows of B are left halves of even functions of
-/// the column, the others of odd functions. So v = E + O on the left and, mirrored, E - O on the right, for half of the
-/// multiplications. The cells of a tile's mirror image follow `mirror` cells after the tile, in the same order.
+/// Product on a grid that is symmetric in its columns. The first `even` rows of B are the left halves of even functions
+/// of the column; the other rows are the left halves of odd functions. Let E and O be the sums over the even and the
+/// odd rows. Then v is E + O in the left half of the grid, and the mirror image of E - O in the right half. This takes
+/// half of the multiplications. The cells of a tile's mirror image are `mirror` cells after the tile, in the same
+/// order.
 struct MirroredProduct {
   Product half;
   int even;
   std::ptrdiff_t mirror;
 };
 
-/// v = (covariance - sum over i of row_i factor_i) / pivot for one block of a dense map. row_i is at rows + i kBlock,
-/// and v is stored after the last row.
+/// Computation of v = (covariance - sum over i of factor_i * row_i) / pivot for one block of a dense map. row_i begins
+/// at rows + i * kBlock, and v is stored after the last row.
 struct DenseRow {
   double* rows;
-  const double* covariance;  ///< may be the memory of v
+  const double* covariance;  ///< may have the same address as v
   const double* factor;
   int depth;
   double pivot;
 };
 
-/// Transformation of a map's number: bounded to [least, most], times scale, plus offset. The product is rounded before
-/// the sum, so that all instruction sets give the same result.
+/// Transformation of the numbers of a map: each number is bounded to [least, most], multiplied by `scale`, and
+/// increased by `offset`. The product is rounded before the addition, so that all instruction sets give the same
+/// result.
 struct Reading {
   double least;
   double most;
@@ -70,8 +75,9 @@ struct Reading {
   double offset;
 };
 
-/// Copy of a map's cells: `rows` rows of `count` numbers from `from`, `width` apart, to `to`, `columns` apart. Each row
-/// of `from` begins at a cache line. If `mirrored`, a row of `to` is written from its end backwards. `to` need not be
+/// Source and destination of a copy of map cells: `rows` rows of `count` numbers each. The rows begin at `from` with
+/// the distance `width`, and are copied to `to` with the distance `columns`. Each source row begins at a cache line. If
+/// `mirrored` is true, `to` is the last number of its row, and the rows are written backwards. `to` need not be
 /// aligned.
 struct Cells {
   const double* from;
@@ -83,24 +89,24 @@ struct Cells {
   bool mirrored;
 };
 
-/// Computes c = A B.
+/// Computes C = A B and stores it at `c`.
 void multiply(const Product& product, double* c);
-// Compute v and update the maps. v of a product is not stored.
+// Compute the new row v of V (see engine.hpp) and update the maps. Only absorb_dense() stores v.
 void absorb_product(const Product& product, const Update& update);
 void absorb_mirrored(const MirroredProduct& product, const Update& update);
 void absorb_dense(const DenseRow& row, const Update& update);
 void read(const Cells& cells, const Reading& reading);
-/// Computes out_i, the largest of the kScores numbers from `from` + i kScores on. No number is NaN. The pointers need
-/// not be aligned.
+/// Computes `count` maxima: out_i is the largest of the kScores numbers that begin at `from` + i * kScores. No number
+/// may be NaN. The pointers need not be aligned.
 void highest(const double* from, int count, double* out);
 
-// L is a lower triangle, stored by rows: row i at packed_row(i), i + 1 numbers and padding up to a line. Its memory has
-// rows up to a multiple of a line, because rows beyond n are read without effect. x has n numbers, its memory also up
-// to a multiple of a line.
+// L is a lower triangle, stored by rows. Row i begins at packed_row(i), and has i + 1 numbers and padding up to a
+// multiple of a cache line. The memory of L has a multiple of kLine rows, because rows beyond n are read, although they
+// do not affect the result. x has n numbers, and its memory has a multiple of kLine numbers.
 void solve_lower(const double* lower, int n, double* x);             ///< x = L^-1 x
 void solve_lower_transposed(const double* lower, int n, double* x);  ///< x = L^-T x
 
-/// Returns the beginning of row i of a packed lower triangle, in numbers.
+/// Returns the offset of row i in the memory of a packed lower triangle, in numbers.
 std::size_t packed_row(int i);
 
 }  // namespace palpate::loops

@@ -86,7 +86,7 @@ void Maps::read(const loops::AlignedArray& map, const loops::Reading& reading, d
   });
 }
 
-// A view is passed by value, although the function writes to its data.
+// `out` is a view (Eigen::Ref), so it is passed by value, although the function writes to its data.
 // NOLINTNEXTLINE(performance-unnecessary-value-param)
 void Maps::read_mean(int k, const loops::Reading& reading, VectorOut out) const {
   read(mean_[static_cast<std::size_t>(k)], reading, out.data());

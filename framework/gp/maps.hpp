@@ -16,8 +16,9 @@
 
 namespace palpate {
 
-/// Part of a tile: `rows` rows of `count` cells from `cell` on, `width` apart. A row has the candidates `candidate`,
-/// `candidate` + 1, ..., in a mirror image `candidate`, `candidate` - 1, .... From row to row, `candidate` increases by
+/// The cells of a tile that belong to candidates: `rows` rows of `count` cells. The first row begins at `cell`, and the
+/// distance between rows is `width`. The first row has the candidates `candidate`, `candidate` + 1, ... or, if
+/// `mirrored`, `candidate`, `candidate` - 1, .... Each further row has candidates whose indices are larger by
 /// `columns`.
 struct MapBlock {
   int candidate;
@@ -29,20 +30,20 @@ struct MapBlock {
   int count;
 };
 
-/// Positions of the candidates in a map. A map is a sequence of strips, and one call of a loop updates a strip. A strip
-/// is a sequence of tiles, one tile per panel of the columns.
+/// Layout of a map: which cell of the memory belongs to which candidate. A map is a sequence of strips, and a loop
+/// updates whole strips. A strip is a sequence of tiles, one tile per panel of columns.
 class Tiling {
  public:
-  /// Candidates at any positions: strips of one tile with kBlock consecutive candidates.
+  /// For candidates at any positions. Each strip is one tile of kBlock consecutive candidates.
   static Tiling blocks(int candidates);
-  /// A product grid: strips of loops::kStripRows rows, with the tiles of loops::Product.
+  /// For a product grid. Each strip has loops::kStripRows rows of the grid and the tiles of loops::Product.
   static Tiling grid(const CandidateGrid& candidates);
-  /// A product grid with the tiles of loops::MirroredProduct: columns of the left half of the grid, and their mirror
-  /// images in the right half.
+  /// For a product grid, with the tiles of loops::MirroredProduct: columns of the left half of the grid, and their
+  /// mirror images in the right half.
   static Tiling mirrored_grid(const CandidateGrid& candidates);
 
   int strips() const { return strips_; }
-  /// Returns the number of cells in a strip, or in a map, padding included.
+  /// Return the number of cells in a strip and in a map, padding included.
   std::size_t strip_size() const { return strip_size_; }
   std::size_t size() const { return strip_size_ * static_cast<std::size_t>(strips_); }
 
@@ -62,7 +63,7 @@ class Tiling {
       const int candidate = row * columns_ + first;
       visit(MapBlock{candidate, columns_, false, cell, width, rows, std::min(columns, candidates_ - candidate)});
       if (mirror_ == 0) continue;
-      // A column in the middle is its own mirror image, which the block above contains.
+      // A middle column is its own mirror image. It is part of the block above, so it is left out here.
       const int images = std::min(columns, columns_ - tiled_columns_ - first);
       visit(MapBlock{(row + 1) * columns_ - 1 - first, columns_, true, cell + static_cast<std::size_t>(mirror_), width,
                      rows, images});
@@ -85,18 +86,19 @@ class Tiling {
   std::ptrdiff_t mirror_ = 0;
 };
 
-/// Maps of means and of the variance, standardised.
+/// The maps of the means and of the variance, in standardised units (signal 1).
 class Maps {
  public:
   Maps(const Tiling& tiling, const std::shared_ptr<Workers>& workers);
 
-  /// Sets `means` maps of means to 0 and the variance to the prior, which is one value if all candidates have the same.
+  /// Sets `means` maps of means to 0, and the variance to `prior`: one value per candidate, or a single value if all
+  /// are equal.
   void restart(int means, const VectorView& prior);
 
-  /// Returns the arguments of a loop that updates a strip by a row with these coefficients, one per mean.
+  /// Returns the argument `update` of a loop, for the strips from `strip` on. `coefficients`: one coefficient per mean.
   loops::Update update(int strip, const double* coefficients);
 
-  /// Reads mean k, or the variance, at all candidates, transformed by `reading`.
+  /// Copy the mean k, or the variance, at all candidates to `out`, transformed by `reading`.
   void read_mean(int k, const loops::Reading& reading, VectorOut out) const;
   void read_variance(const loops::Reading& reading, VectorOut out) const;
 

@@ -9,11 +9,11 @@
 namespace palpate {
 namespace {
 
-constexpr double kOther = 0.05;   // probability that a low contact is not with the bare desk
+constexpr double kOther = 0.05;   // probability that a low contact is not a contact with the bare desk
 constexpr double kOthers = 0.01;  // metres: standard deviation of the height of such a contact
-// A low contact near an object contact may be at the rim of the object if the object contact is at most this high.
-// Beside higher contacts, a wall reaches down to the desk.
-constexpr double kRim = 0.04;     // metres of height
+// A low contact within kBeside of an object contact below kRim may be at the rim of the object. Objects with higher
+// contacts are assumed to have walls that reach down to the desk.
+constexpr double kRim = 0.04;     // metres above the desk
 constexpr double kBeside = 0.03;  // metres
 
 }  // namespace
@@ -29,7 +29,7 @@ void OffsetModel::add(const Target& place, double seconds, double excess, int mo
 
 void OffsetModel::find_desk() {
   const std::size_t contacts = touched_.size();
-  std::vector<bool> left(contacts, true);  // contacts of the search; single low contacts are excluded
+  std::vector<bool> left(contacts, true);  // contacts that take part in the search, without single low contacts
   above_ = left;
   search_from_below(above_);
   std::vector<bool> found = above_;
@@ -39,14 +39,14 @@ void OffsetModel::find_desk() {
       if (left[i] && !found[i]) lows.push_back(i);
     }
     if (lows.size() > 1) above_ = found;
-    if (lows.size() != 1) return;  // without a low contact, no two agree, and the first search remains
+    if (lows.size() != 1) return;  // no two low contacts agree, so the result of the first search is kept
     left[lows.front()] = false;
     found = left;
     search_from_below(found);
   }
 }
 
-/// Removes from `left` the contacts with the desk. Contacts that lie clearly above the others remain.
+/// Removes the contacts with the desk from `left`. Contacts that are clearly above the desk remain.
 void OffsetModel::search_from_below(std::vector<bool>& left) const {
   // The GP of covariance() as a linear regression: the common offset, the drift, and the offset of each motion.
   const auto motions = static_cast<Eigen::Index>(motions_.size());
@@ -99,7 +99,7 @@ void OffsetModel::judge_all() {
     judged_.push_back(low.when);
     excess.push_back(low.excess);
   }
-  // The latest contacts determine the drift, and suffice for the offset.
+  // Only the latest contacts are used. They determine the drift, and they suffice for the offset.
   constexpr std::ptrdiff_t kMost = 60;
   if (static_cast<std::ptrdiff_t>(judged_.size()) > kMost) {
     judged_.erase(judged_.begin(), judged_.end() - kMost);
@@ -115,7 +115,7 @@ void OffsetModel::judge_all() {
   problem.signals = {1.0};
   problem.noises = {prior_.noise};
   problem.outlier_deviation = kOthers;
-  // Only a few tenths of a millimetre can be gained, so the most probable sets suffice.
+  // More sets would change the offset by only a few tenths of a millimetre, so the most probable sets suffice.
   constexpr OutlierSearchLimits kLimits{8, 1e-3, 1e-6};
   if (n > 0) posterior_ = infer_outliers(problem, kLimits);
 }
@@ -124,7 +124,8 @@ OffsetModel::Estimate OffsetModel::at(double seconds, int motion) const {
   const When now{seconds, motion};
   Estimate out{0.0, covariance(now, now)};
   if (judged_.empty()) return out;
-  const auto size = static_cast<Eigen::Index>(judged_.size()) + 1;  // of the posterior without its broad signal
+  // Size of the coefficients without the broad signal, which is unused here.
+  const auto size = static_cast<Eigen::Index>(judged_.size()) + 1;
   Eigen::VectorXd z(size);
   z(0) = 1.0;
   for (Eigen::Index i = 1; i < size; ++i) z(i) = covariance(now, judged_[static_cast<std::size_t>(i - 1)]);

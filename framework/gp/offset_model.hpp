@@ -1,25 +1,28 @@
 // SPDX-License-Identifier: MIT
-// Error that motion and arm add to all heights, estimated from contacts with the desk, whose height is known. It
-// consists of a constant offset and a drift in time.
+// Estimates the error that motion and arm add to all heights: a constant offset and a drift over time. The estimate
+// uses contacts with the desk, whose height is known.
 //
-// Linear regression with a normal prior over both is a Gaussian process over time, of covariance o^2 + d^2 t t'
-// (Rasmussen and Williams 2006, section 2.1.2).
+// Offset and drift have normal priors with the standard deviations o and d. This linear regression is a Gaussian
+// process over the time t, with the covariance o^2 + d^2 t t' (Rasmussen and Williams 2006, section 2.1.2).
 //
 // The label of a contact, desk or object, is unknown, but nothing is below the desk. A height relative to the desk is y
-// = offset + drift + z + noise, with z = 0 on the desk and z >= 0 elsewhere. So the lowest contacts bound the error
-// from above and are taken for the desk first. A forward search (Atkinson and Riani 2000) then repeatedly adds the
-// contact with the lowest residual, in standard deviations of its prediction. It ends when the next contact is clearly
-// above the desk. The standard deviation of a prediction covers the noise, the drift between the times, and differences
-// between motions. A contact with something above the desk, taken for the desk at first, is corrected once the desk
-// itself is touched. A single low contact may be an outlier and is not trusted as a bound; two that agree are.
+// = offset + drift + z + noise, with z = 0 on the desk and z >= 0 elsewhere. So the lowest contacts are upper bounds of
+// the error, and count as contacts with the desk at first. A forward search (Atkinson and Riani 2000) then repeatedly
+// adds the contact with the lowest residual, in standard deviations of its prediction. The search ends when the next
+// contact is clearly above the desk. The standard deviation of a prediction covers the noise, the drift between the
+// times, and differences between motions. If an object contact counts as a desk contact at first, this is corrected
+// once the desk itself is touched. A single low contact may be an outlier, so it is not used as a bound. Two low
+// contacts that agree are used.
 //
-// A contact may be low without touching the bare desk, for example on the rim of a dome or after a jerk of the force.
-// Contacts near a rim are left out; the others are tested for outliers like taps on a surface
-// (gp/outlier_posterior.hpp).
+// A contact may be low although the tool did not touch the bare desk, for example on the rim of a dome or after a jerk
+// of the force. Low contacts near a low object contact are left out. The other low contacts are tested for outliers
+// like taps on a surface (gp/outlier_posterior.hpp).
 //
-// Each motion has an additional offset of its own, with a fifth of the offset's prior variance.
+// Each motion has an offset of its own in addition to the common offset. A fifth of the prior variance o^2 belongs to
+// the motion's own offset.
 //
-// The model does not cover the additional softness of an object compared with the desk, because no contact reveals it.
+// An object may be softer than the desk, which makes its heights too low. The model does not contain this error,
+// because no contact reveals it.
 #pragma once
 
 #include "gp/outlier_posterior.hpp"
@@ -34,7 +37,7 @@ namespace palpate {
 struct OffsetPrior {
   double offset;  ///< metres
   double drift;   ///< metres per second
-  double noise;   ///< of a contact with the desk, metres
+  double noise;   ///< standard deviation of the height of a contact with the desk, metres
 };
 
 class OffsetModel {
@@ -44,9 +47,10 @@ class OffsetModel {
   /// Adds the next contact: `seconds` into the run, `excess` metres above the desk's height, made by `motion`.
   void add(const Target& place, double seconds, double excess, int motion = 0);
 
-  /// Returns whether a contact, counted from 0, lies clearly above the desk, given all contacts so far.
+  /// Returns whether a contact (counted from 0) is clearly above the desk, given all contacts so far.
   bool above(std::size_t contact) const { return above_[contact]; }
-  /// Number of standard deviations above its prediction from which a contact counts as above the desk.
+  /// A contact counts as above the desk if its height exceeds the predicted height of the desk by this many standard
+  /// deviations.
   static constexpr double kAboveDeskSigmas = 2.4;
 
   struct Estimate {
@@ -80,7 +84,7 @@ class OffsetModel {
   }
 
   OffsetPrior prior_;
-  std::vector<int> motions_;      ///< that contacts were made by
+  std::vector<int> motions_;      ///< motions of the contacts so far
   std::vector<Touched> touched_;  ///< all contacts
   std::vector<bool> above_;       ///< flag per contact
   std::vector<When> judged_;      ///< times and motions of the contacts that are tested for outliers

@@ -18,12 +18,12 @@ class OuterProducts {
  public:
   explicit OuterProducts(Eigen::Index size) : sum_(Eigen::MatrixXd::Zero(size, size)), batch_(size, kBatch) {}
 
-  /// Returns the column for the next vector; commit() adds it.
+  /// Returns the memory for the next vector; commit() adds the vector to the sum.
   auto next() { return batch_.col(count_); }
   void commit() {
     if (++count_ == kBatch) flush();
   }
-  /// Returns the lower half of the sum.
+  /// Returns the sum; only its lower half is computed.
   Eigen::MatrixXd& sum() {
     flush();
     return sum_;
@@ -39,8 +39,8 @@ class OuterProducts {
   Eigen::Index count_ = 0;
 };
 
-/// Weighted moments over the sets of one signal, in coordinates (1, c), where c are the covariances with the taps, the
-/// broad signal included.
+/// Weighted moments of the coefficients over the sets of one signal. The coefficients belong to (1, c), where c is the
+/// vector of covariances with the taps, the broad signal included.
 struct Moments {
   explicit Moments(Eigen::Index taps) : mean(Eigen::VectorXd::Zero(taps + 1)), squares(taps + 1) {}
 
@@ -49,7 +49,8 @@ struct Moments {
   double weight = 0.0;
 };
 
-/// Adds the mean and the variance of the constant for one set, and returns the index of its remainder.
+/// Adds the mean of one set, and the variance of the constant in it. Returns the index of the set's remainder, which is
+/// the GP without the set (see OutlierSearch).
 int add_set(OutlierSearch& search, const InlierGp& gp, const OutlierSet& set, double weight, Moments& moments) {
   const int remainder = search.remainder_of(set);
   const auto ones = search.solved_ones(remainder);
@@ -68,13 +69,14 @@ int add_set(OutlierSearch& search, const InlierGp& gp, const OutlierSet& set, do
   return remainder;
 }
 
-/// Adds the column u of a remainder, with the weight of all sets that have it.
+/// Adds the column u of a remainder, with the total weight of all sets that share this column.
 void add_column(const OutlierSearch& search, int remainder, double weight, Moments& moments) {
   moments.squares.next() << 0.0, std::sqrt(weight) * search.column(remainder);
   moments.squares.commit();
 }
 
-/// Adds all sets of one signal and noise. `largest` is the log weight of the most probable set over all of them.
+/// Adds all sets of one signal and one noise. `largest` is the log weight of the most probable set over all signals and
+/// noises.
 void add_sets(OutlierSearch& search, const InlierGp& gp, const OutlierProblem& problem, double min_summed,
               double largest, Moments& moments, OutlierPosterior& out) {
   double all = 0.0;
@@ -96,7 +98,7 @@ void add_sets(OutlierSearch& search, const InlierGp& gp, const OutlierProblem& p
     const double weight = column_weights[static_cast<std::size_t>(remainder)];
     if (weight > 0.0) add_column(search, remainder, weight, moments);
   }
-  // Redundant taps, whose rows are 0, keep their prior.
+  // Redundant taps, whose rows of the inverse are 0, keep their prior probability.
   for (int i = 0; i < gp.taps(); ++i) {
     if (gp.inverse(i, i) == 0.0) out.probability(i) += all * problem.prior(i);
   }
@@ -105,7 +107,7 @@ void add_sets(OutlierSearch& search, const InlierGp& gp, const OutlierProblem& p
   if (all > 0.0) moments.squares.sum().bottomRightCorner(n, n).triangularView<Eigen::Lower>() -= all * gp.inverse;
 }
 
-/// Adds the moments of one signal to the coefficients of the surface. Both signals are variances.
+/// Adds the moments of one signal to the coefficients of the surface. `signal` and `broad` are variances.
 void add_signal(Moments& moments, double signal, double broad, OutlierPosterior& out) {
   const Eigen::Index n = out.probability.size();
   const Eigen::MatrixXd form = moments.squares.sum().selfadjointView<Eigen::Lower>();

@@ -9,7 +9,7 @@
 namespace palpate {
 namespace {
 
-/// Smallest distance of a prior from 0 and 1. A prior of 0 or 1 would decide about a tap without regard to its height.
+/// Smallest distance of a prior from 0 and 1. With a prior of 0 or 1, the height of the tap would have no influence.
 constexpr double kLeastPrior = 1e-9;
 
 constexpr std::size_t kBits = 64;
@@ -70,7 +70,7 @@ int OutlierSearch::remainder_of(const OutlierSet& set) {
   return scratch_;
 }
 
-/// Computes the GP without a set from that without its parent.
+/// Computes the remainder of a set from the remainder of its parent.
 void OutlierSearch::compute_remainder(const OutlierSet& set, int to) {
   double& log_weight = log_weights_[static_cast<std::size_t>(to)];
   auto u = part(to, 0);
@@ -99,7 +99,8 @@ void OutlierSearch::compute_remainder(const OutlierSet& set, int to) {
       log_weights_[static_cast<std::size_t>(before)] + gp_.log_odds(set.tap) + 0.5 * height * height - math::log(root);
 }
 
-/// Computes the log weights of a set with each other tap. The values at its own taps are meaningless.
+/// Computes the log weights of the sets that contain this set and one more tap, per tap. The values of taps that are
+/// already in the set are meaningless.
 void OutlierSearch::weigh_extensions(int remainder, Eigen::ArrayXd& out) const {
   const auto h = solved_heights(remainder).array();
   const auto o = solved_ones(remainder).array();
@@ -112,7 +113,7 @@ void OutlierSearch::weigh_extensions(int remainder, Eigen::ArrayXd& out) const {
   const double prior = gp_.mean_deviation * gp_.mean_deviation;
   const double all_heights = h.sum();
   const double without_any = 1.0 / prior + o.sum();
-  // (without_any own - o^2) is the precision of the constant times `own`, so one logarithm has both terms.
+  // without_any * own - o^2 is the precision of the constant times `own`, so a single logarithm covers both factors.
   out += 0.5 * ((h.square() + (all_heights * own - o * h).square() / (without_any * own - o.square())) / own -
                 ((without_any * own - o.square()) * prior).unaryExpr(&math::log));
 }
@@ -159,7 +160,7 @@ void OutlierSearch::extend(int parent, const Eigen::ArrayXd& log_weights, std::s
   for (int i = 0; i < gp_.taps(); ++i) {
     const double weight = log_weights(i);
     if (!(weight - largest_ >= log_min_expanded_)) continue;
-    // A set that is not summed matters only if it will be expanded.
+    // A set whose weight is too small for the sum is useful only if it will be expanded.
     const bool is_summed = !(weight - largest_ < log_min_summed_);
     if (!is_summed && waiting_.size() >= expansions_left && weight <= set_at(waiting_.back()).log_weight) continue;
     std::copy_n(&bits_[static_cast<std::size_t>(parent) * words_], words_, bits.begin());

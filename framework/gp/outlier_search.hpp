@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Search for the most probable sets of outliers, for one signal and one noise (see outlier_posterior.hpp).
+// Searches for the most probable sets of outliers, for one signal and one noise. outlier_posterior.hpp defines the
+// symbols.
 #pragma once
 
 #include "gp/outlier_posterior.hpp"
@@ -12,18 +13,19 @@
 
 namespace palpate {
 
-/// GP of all taps with one signal and one noise, where no tap is an outlier.
+/// GP with one signal and one noise that treats all taps as inliers.
 struct InlierGp {
   InlierGp(const OutlierProblem& problem, double surface_signal, double tap_noise);
 
   int taps() const { return static_cast<int>(solved_heights.size()); }
-  /// Posterior of the constant in the mean, and its term in the log weight of a set. All 0 without a constant.
+  /// Posterior of the constant in the mean, and the constant's term in the log weight of a set. All values are 0
+  /// without a constant.
   struct Constant {
     double precision = 0.0;
     double mean = 0.0;
     double log_weight = 0.0;
   };
-  /// `ones` and `heights` are 1^T A' 1 and 1^T A' y of a set.
+  /// Returns these values for a set with the sums `ones` = 1^T A' 1 and `heights` = 1^T A' y.
   Constant constant(double ones, double heights) const;
 
   double signal;
@@ -31,24 +33,26 @@ struct InlierGp {
   Eigen::MatrixXd inverse;         ///< A = K^-1; rows that no jitter makes independent are 0
   Eigen::VectorXd solved_heights;  ///< A y
   Eigen::VectorXd solved_ones;     ///< A 1
-  double log_evidence;             ///< evidence of all heights without the constant, up to a common number
-  Eigen::ArrayXd log_odds;         ///< odds of an outlier against an inlier, without the evidence of the other taps
+  double log_evidence;             ///< log evidence of all heights without the constant, up to a common term
+  Eigen::ArrayXd log_odds;         ///< log(pi_i b_i / (1 - pi_i)) per tap, up to a constant
   FactorReport report;
 };
 
-/// A set of outliers: the set of its parent and one more tap.
+/// A set of outliers: the taps of its parent set and one more tap.
 struct OutlierSet {
   int parent = -1;  ///< index of the parent; -1 for the empty set
   int tap = -1;
-  int remainder = -1;  ///< index of the GP without the set; -1 if the set was not expanded
+  int remainder = -1;  ///< index of the GP without the taps of the set; -1 if the set was not expanded
   double log_weight = 0.0;
 };
 
-/// Finds the most probable sets by expanding the most probable set first. To expand a set means to weigh all sets with
-/// one more tap.
+/// Finds the most probable sets by a best-first search: it always expands the most probable set that is not expanded
+/// yet. To expand a set means to compute the weights of all sets with one more tap. The remainder of a set is the GP
+/// without the taps of the set.
 ///
-/// With A' and p = A'_ii of the parent, the A' of a set is A' - u u^T, u = A'_:i / sqrt(p). So it is A minus one column
-/// u u^T per tap of the set, which the set shares with its ancestors.
+/// Let A' be the matrix of a parent set. The set with the additional tap i has the matrix A' - u u^T with u = A'_:i /
+/// sqrt(A'_ii). So the matrix of a set is A minus one product u u^T per tap of the set. A set shares all but the last
+/// of its vectors u with its parent.
 class OutlierSearch {
  public:
   OutlierSearch(const InlierGp& gp, const OutlierSearchLimits& limits);
@@ -56,11 +60,12 @@ class OutlierSearch {
   const std::vector<OutlierSet>& sets() const { return sets_; }
   double largest_log_weight() const { return largest_; }
   double next_weight() const { return next_weight_; }  ///< see OutlierPosterior
-  int expansions() const { return scratch_; }          ///< remainders of expanded sets have indices below
+  int expansions() const { return scratch_; }          ///< remainders of expanded sets have smaller indices
 
-  /// Returns the index of the GP without a set. For a set that was not expanded, it is valid until the next call.
+  /// Returns the index of the remainder of a set. For a set that was not expanded, the index is valid until the next
+  /// call.
   int remainder_of(const OutlierSet& set);
-  auto column(int remainder) const { return part(remainder, 0); }          ///< u of the set's own tap
+  auto column(int remainder) const { return part(remainder, 0); }          ///< u of the last tap of the set
   auto solved_heights(int remainder) const { return part(remainder, 1); }  ///< A' y
   auto solved_ones(int remainder) const { return part(remainder, 2); }     ///< A' 1
 
@@ -84,13 +89,13 @@ class OutlierSearch {
   bool contains(const std::uint64_t* bits) const;
 
   const InlierGp& gp_;
-  std::size_t words_;  ///< number of words for the bits of a set, one bit per tap
+  std::size_t words_;  ///< number of 64-bit words per set, with one bit per tap
   double log_min_summed_, log_min_expanded_;
   std::vector<OutlierSet> sets_;
   std::vector<std::uint64_t> bits_;
-  std::vector<int> waiting_;         ///< sets to expand, the most probable first
+  std::vector<int> waiting_;         ///< sets that may be expanded, the most probable first
   Eigen::MatrixXd remainders_;       ///< kParts columns per remainder
-  std::vector<double> log_weights_;  ///< per remainder, without the term of the constant
+  std::vector<double> log_weights_;  ///< log weight of the set per remainder, without the term of the constant
   int scratch_;                      ///< index of the remainder of sets that were not expanded
   double largest_ = 0.0;
   double next_weight_ = 0.0;

@@ -13,7 +13,7 @@ namespace palpate::loops {
 
 constexpr int round_up(int value, int unit) { return (value + unit - 1) / unit * unit; }
 
-/// Array of numbers, aligned to a cache line and not initialised, so that unused memory costs nothing.
+/// Array of numbers, aligned to a cache line. It is not initialised, so unused memory costs nothing.
 class AlignedArray {
  public:
   AlignedArray() = default;
@@ -34,8 +34,8 @@ class AlignedArray {
   std::size_t size_ = 0;
 };
 
-/// Matrix that grows by rows, divided into panels of `width` columns. The rows of a panel are contiguous. The last
-/// panel has the remaining columns, rounded up to `unit` and padded with 0.
+/// Matrix that grows by rows, divided into panels of `width` columns. The rows of a panel are contiguous in memory. The
+/// last panel has the remaining columns; their number is rounded up to a multiple of `unit`, and the padding is 0.
 class Panels {
  public:
   Panels() = default;

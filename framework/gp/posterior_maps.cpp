@@ -144,7 +144,7 @@ int PosteriorMaps::variances_clamped() const {
   read_raw_variance(variance);
   Eigen::Index clamped = 0;
   with_prior([&](const auto& prior) {
-    // Rounding in the last place above the prior does not count, any value below 0 does.
+    // A value above the prior by rounding in the last place does not count. Any value below 0 counts.
     clamped = (variance.array() < 0.0 || variance.array() > prior * (1.0 + 4.0 * kEpsilon)).count();
   });
   return static_cast<int>(clamped);
@@ -155,7 +155,7 @@ double PosteriorMaps::error_bound() const {
   if (errors.size() == 0 || !(errors.maxCoeff() > 0.0)) return 0.0;
   const double prior = largest_prior();
   const double deviation = std::sqrt(prior);
-  // L^-1 lengthens a vector by 1 / noise at most, because each eigenvalue of L L^T is at least noise^2.
+  // L^-1 lengthens a vector by a factor of at most 1 / noise, because each eigenvalue of L L^T is at least noise^2.
   const double row = std::min(errors.maxCoeff() * std::sqrt(inverse_norms_), errors.norm() / noise_) / deviation;
   double variance = 2.0 * row + row * row;
   double mean = 0.0;

@@ -9,19 +9,22 @@
 namespace palpate {
 namespace {
 
-/// Signals of the surface, as shares of the configured signal, because a surface may be nearly flat.
+/// Possible signals of the surface, as shares of the configured signal. Small signals are included because a surface
+/// may be nearly flat.
 constexpr double kSignals[] = {1.0, 0.3, 0.1};
-/// Noises of a tap, as shares of the configured noise, which describes an inexact arm.
+/// Possible noises of a tap, as shares of the configured noise. The configured noise describes an inexact arm; the
+/// smaller noise describes an exact arm.
 constexpr double kNoises[] = {1.0, 1.0 / 6.0};
-/// The broad signal, as a share of the configured signal, and the ratio of its length scale to the kernel's.
+/// Standard deviation of the broad signal, as a share of the configured signal, and its length scale, divided by the
+/// length scale of the kernel.
 constexpr double kBroadSignal = 0.5;
 constexpr double kBroadScale = 2.5;
-/// Noise, as a share of the signal, below which true heights may contradict a GP; see update().
+/// Noise, as a share of the signal, below which heights of inliers may contradict a GP; see update().
 constexpr double kExactNoise = 0.03;
-/// Larger noises for that comparison, as shares of the signal. The largest is about the misfit of a kernel that is much
-/// too smooth, the smallest is the noise of an exact arm.
+/// Noises for the comparison in update(), as shares of the signal. The largest is about the misfit of a kernel that is
+/// much too smooth. The smallest is the noise of an exact arm.
 constexpr double kRoughNoises[] = {0.3, 0.06, 0.01};
-/// Log of a ratio of ten, which is strong evidence (Jeffreys 1961).
+/// Natural logarithm of the evidence ratio 10, which is strong evidence (Jeffreys 1961).
 constexpr double kStrongEvidence = 2.3;
 
 OutlierProblem problem_of(const GaussianProcess& gp, const VectorView& prior, const Eigen::VectorXd& extra_variance) {
@@ -104,7 +107,7 @@ void RobustSurface::read_mean(const GaussianProcess& gp, Eigen::VectorXd& out) {
 void RobustSurface::read_variance(const GaussianProcess& gp, Eigen::VectorXd& out) {
   if (!excludes_outliers_) return gp.read_variance(0, out);
   update_covariances(gp);
-  // Half of the products give z^T b z, because b is symmetric. The products of one batch of candidates fit into the
+  // b is symmetric, so z^T b z needs only half of the products. The products of one batch of candidates fit into the
   // cache.
   constexpr Eigen::Index kBatch = 128;
   Eigen::MatrixXd half = posterior_.b.triangularView<Eigen::StrictlyUpper>();
@@ -121,7 +124,7 @@ void RobustSurface::read_variance(const GaussianProcess& gp, Eigen::VectorXd& ou
     products.noalias() = z * half.triangularView<Eigen::Upper>();
     out.segment(first, count) += 2.0 * products.cwiseProduct(z).rowwise().sum().head(count);
   }
-  // Rounding may leave a variance below 0 where taps are close.
+  // Near taps, rounding may make a variance negative.
   clamped_ = static_cast<int>((out.array() < 0.0).count());
   out = out.cwiseMax(0.0);
 }

@@ -35,12 +35,13 @@ void Workers::run(int count, Call call, const void* job) {
   open_ = true;
   ++jobs_;
   if (asleep_ > 0) {
-    // With the lock, a helper that has just seen no job is already waiting, and receives the notification.
+    // The lock ensures that a helper which found no new job is already waiting when it is notified.
     { const std::lock_guard<std::mutex> lock(mutex_); }
     wake_.notify_all();
   }
   take_parts(0);
-  // A helper increments inside_ before it reads open_. So a helper that is not counted below finds the job closed.
+  // A helper increments inside_ before it reads open_. So a helper that is not counted in inside_ below finds open_
+  // false and takes no part.
   open_ = false;
   while (inside_ > 0) std::this_thread::yield();
   if (thrown_) std::rethrow_exception(std::exchange(thrown_, nullptr));

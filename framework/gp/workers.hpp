@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Threads that share the parts of short jobs.
+// Threads that share the work of short jobs.
 #pragma once
 
 #include <atomic>
@@ -11,9 +11,10 @@
 
 namespace palpate {
 
-/// The calling thread and `threads` - 1 helpers. Each free thread takes the next part. So a job with independent parts
-/// has the same result on any number of threads. After a job, a helper polls for the next job for some time and then
-/// sleeps, because jobs often follow each other immediately. The caller never waits for a helper that has not started.
+/// The calling thread and `threads` - 1 helper threads. A job is divided into parts, and each free thread takes the
+/// next part. So a job with independent parts has the same result on any number of threads. After a job, a helper polls
+/// for the next job for some time and then sleeps, because jobs often follow each other immediately. The caller never
+/// waits for a helper that has not started.
 class Workers {
  public:
   explicit Workers(int threads);
@@ -23,9 +24,9 @@ class Workers {
 
   int threads() const { return static_cast<int>(helpers_.size()) + 1; }
 
-  /// Calls job(part, worker) for the parts 0 to `count` - 1 and returns when all are done. `worker` is below threads(),
-  /// and a worker has one part at a time. After an exception in any thread, no further part starts, and the first
-  /// exception is thrown here once all workers have stopped.
+  /// Calls job(part, worker) for the parts 0 to `count` - 1 and returns when all parts are done. `worker` is the index
+  /// of the thread, below threads(); a worker executes one part at a time. After an exception in any thread, no further
+  /// part starts. The first exception is thrown here once all workers have stopped.
   template <class Job>
   void for_each(int count, const Job& job) {
     if (helpers_.empty() || count < 2) {

@@ -131,8 +131,9 @@ const PluginManifest& check_manifest(const boost::dll::shared_library& library, 
   return manifest;
 }
 
-/// Calls into a plugin. The code of an exception thrown there belongs to the plugin, so that only copies of its text
-/// may leave. `options` may be null; an error about an option gets the place of that option.
+/// Calls a function of a plugin, and converts exceptions to Error. The code of an exception from a plugin belongs to
+/// its library, so the Error contains only copies of the texts. `options` may be null; an error about an option gets
+/// the place of that option.
 template <class Call>
 void guarded(const Tree* options, const std::string& plugin, const char* failure, Call call) {
   const std::string place = options != nullptr ? options->place.text() : std::string();
@@ -345,7 +346,7 @@ std::shared_ptr<const Motions> PluginHost::motions(const PluginChoice& choice, c
     fill(*choice.options, *this, choice.kind, [&](Fields& fields) { made = holder->manifest->motions(fields, scene); });
   });
   if (made == nullptr) return nullptr;
-  // Here, too, the deleter holds the library, so that the library outlives the object.
+  // As in create(), the deleter holds the library, so that the library outlives the object.
   return wrap_plugin(choice.kind + "/" + choice.type,
                      std::shared_ptr<Motions>(made, [holder](const Motions* gone) { delete gone; }));
 }

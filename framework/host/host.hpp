@@ -24,7 +24,7 @@ struct PluginListing {
   std::string name;
   std::filesystem::path file;
   std::string summary;  ///< "" if the library cannot be used
-  std::string trouble;  ///< one line with file, step and reason; "" for a usable library
+  std::string trouble;  ///< one line: file, failed step of loading, reason; "" for a usable library
 };
 
 /// A library of a run, for its manifest.
@@ -35,12 +35,12 @@ struct LoadedPlugin {
   std::string hash;  ///< hash of the loaded parts of the file: see loaded_hash.hpp
 };
 
-/// Returns kind and name of all plugins of a build, even if they are not built yet, from the list in its plugin folder.
-/// Returns nothing for any other folder, such as an installed one.
+/// Returns kind and name of all plugins of a build tree, including plugins that are not built yet. `folder` is its
+/// plugin folder, which contains a list of them. Returns nothing for any other folder, such as an installed one.
 PluginNames plugins_of_build(const std::filesystem::path& folder);
 
-/// Loads libraries and keeps them loaded for its lifetime. The objects that a library created keep it loaded even
-/// longer. The class is thread-safe.
+/// Loads libraries and keeps them loaded for its lifetime. An object that a library created keeps the library loaded
+/// even after the end of the host. The class is thread-safe.
 class PluginHost final : public PluginSource, public PluginFactory {
  public:
   /// Searches for <folder>/<kind>/<name>.so in each of `folders`.
@@ -56,12 +56,13 @@ class PluginHost final : public PluginSource, public PluginFactory {
   /// Returns the folders of PALPATE_PLUGIN_PATH (separated by ':'), followed by `shipped`.
   static std::vector<std::filesystem::path> search_path(const std::filesystem::path& shipped);
 
-  /// Loads <kind>/<name>.so if necessary, and no other file. Throws Error, without a place, if the library is missing
-  /// (with the nearest name) or if two folders have it. A failed check is an error with file, step and reason.
+  /// Loads <kind>/<name>.so if necessary, and no other file. Throws Error without a place if the library is missing,
+  /// with the most similar name as its hint, or if two folders have it. If the library cannot be loaded or fails a
+  /// check, the Error names the file, the step (such as `comparing the ABI`) and the reason.
   void describe(const std::string& kind, const std::string& name, Fields& fields) const override;
 
-  /// Throws Error for any exception of the plugin's constructor. Its place is the choice in the config, unless the
-  /// plugin names another one.
+  /// Throws Error for any exception of the plugin's constructor. The place of the Error is where the config chooses the
+  /// plugin, unless the plugin names another place.
   std::shared_ptr<void> create(const PluginChoice& choice, const Context& context) const override;
 
   /// Throws Error as create() does.
@@ -73,8 +74,8 @@ class PluginHost final : public PluginSource, public PluginFactory {
   /// Returns the sorted names of a kind, including plugins that are not built yet. Opens no library.
   std::vector<std::string> names(const std::string& kind) const;
 
-  /// Returns file and hash of all libraries among these plugins, in their order, and loads them if necessary. Throws
-  /// Error.
+  /// Returns file and hash of the library of each of these plugins, in their order, and loads it if necessary. Plugins
+  /// that the program itself contains are left out. Throws Error.
   std::vector<LoadedPlugin> loaded(const PluginNames& plugins) const;
 
   /// Returns whether one of these plugins moves a device that only one run can use at a time, such as an arm. Loads the

@@ -77,7 +77,8 @@ std::vector<PluginListing> PluginHost::list(const std::string& kind, const std::
     }
     for (const auto& [stem, file] : files(one)) {
       if (!name.empty() && stem != name) continue;
-      // The files are sorted, so that the same name in a second folder follows at once. The first row reports both.
+      // The files are sorted by name, so a file of the same name in a second folder comes directly after the first. The
+      // first row reports both.
       if (!out.empty() && out.back().kind == one && out.back().name == stem) continue;
       out.push_back({one, stem, file, {}, {}});
       load_in_child([this, &row = out.back()] { return look(row.kind, row.name); }, out.back());

@@ -21,7 +21,8 @@ std::string hash_of_loaded(std::string_view library) {
   loaded.reserve(library.size());
   for (const ElfW(Phdr) & segment : segments) {
     if (segment.p_type != PT_LOAD) continue;
-    // The header of the file, with which the first segment begins, contains the position of the section table.
+    // Skip the header of the file, with which the first segment begins. It contains the position of the section table,
+    // which changes when a package strips the file.
     const auto begin = std::max<std::uint64_t>(segment.p_offset, sizeof header);
     const auto end = std::max(begin, std::uint64_t{segment.p_offset} + segment.p_filesz);
     loaded += std::to_string(segment.p_vaddr) + ":" + std::to_string(segment.p_flags) + ":";

@@ -22,8 +22,8 @@
 namespace palpate {
 namespace {
 
-/// A plugin has read a quantity that it did not declare. This is the error of that plugin, even if the call went
-/// through another one.
+/// The error of a plugin that reads a quantity without declaring it. It keeps the name of this plugin, even if another
+/// plugin's wrapper catches it.
 class Undeclared final : public Error {
  public:
   using Error::Error;
@@ -32,7 +32,7 @@ class Undeclared final : public Error {
 /// A belief that allows a plugin to read only the quantities that it declared.
 class Declared final : public BeliefView {
  public:
-  /// `belief` and the plugin's `name` must outlive it.
+  /// `belief` and `name`, the name of the plugin, must outlive the object.
   Declared(const BeliefView& belief, QuantitySet reads, const std::string& name)
       : belief_(belief), reads_(std::move(reads)), name_(name) {}
   const Candidates& candidates() const override { return belief_.candidates(); }
@@ -228,7 +228,7 @@ class WrappedFootprint final : public Wrapper<Footprint> {
   std::string remark() const override { return call(&Footprint::remark); }
 };
 
-/// A reference to values of a belief stays valid until the next tap, so that the checks copy nothing.
+/// The checks copy no values, because a reference to the values of a belief stays valid until the next tap.
 class WrappedBelief final : public Wrapper<Belief> {
  public:
   using Wrapper::Wrapper;
@@ -309,7 +309,7 @@ class WrappedBackend final : public Wrapper<Backend> {
 class WrappedShape final : public Wrapper<Shape> {
  public:
   using Wrapper::Wrapper;
-  // A line without intersection has its first intersection at infinity and its top at minus infinity.
+  // If a line misses the shape, first_intersection() returns infinity and top() minus infinity.
   double first_intersection(const Line& line) const override {
     const double out = call(&Shape::first_intersection, line);
     if (out != kNever) require_finite("first_intersection()", out);

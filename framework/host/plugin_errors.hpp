@@ -10,9 +10,9 @@ namespace palpate {
 class Motions;
 
 /// Returns `object`, which implements the interface of `kind`, behind a wrapper of the same interface. Any exception
-/// becomes an Error with the place <kind>/<type>. Its texts are copies, because the code of the exception belongs to
-/// the library. A result that is not finite ends the run if the interface requires a finite one. Scores and contacts
-/// are exceptions, because the code that uses them checks them.
+/// becomes an Error with the place <kind>/<type>. The texts of the Error are copies, because the code of the exception
+/// belongs to the library. If the interface requires a finite result and the plugin returns another one, the wrapper
+/// throws Error of kind `run`. Scores and contacts are not checked here, because the code that uses them checks them.
 std::shared_ptr<void> wrap_plugin(const std::string& kind, const std::string& type,
                                   const std::shared_ptr<void>& object);
 

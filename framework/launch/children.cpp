@@ -53,7 +53,7 @@ bool in_children(std::size_t count, int workers, const std::function<void(std::s
   }
   std::size_t done = 0;
   for (bool any = step > 0; any;) {
-    constexpr double kPollSeconds = 0.1;  // s between two calls of listen()
+    constexpr double kPollSeconds = 0.1;  // longest wait of one call of listen(), seconds
     ChildProcess::listen(children, kPollSeconds);
     const std::size_t before = std::exchange(done, 0);
     any = false;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Distributes work among child processes. The work may return results only as files. Plugins need not be thread-safe.
+// Distributes work among child processes. The work may return results only as files. Child processes are used instead
+// of threads, because plugins need not be thread-safe.
 #pragma once
 
 #include <atomic>

@@ -29,7 +29,7 @@ struct JobState {
 
 JobState look_at(const std::filesystem::path& directory, JobCheck also) {
   RunStatus status = also == JobCheck::running ? read_standing(directory) : read_ending(directory);
-  // A process that resumes the job finds it done and writes the missing files.
+  // The job counts as unfinished, so that a process resumes it; run_job() then only restores the missing files.
   if (also == JobCheck::missing_files && status.state == RunStatus::State::done && lacks_files(directory, *status.end))
     status.state = RunStatus::State::unfinished;
   if (status.state != RunStatus::State::failed) return {status.state, 0, ""};
@@ -84,7 +84,8 @@ bool execute_jobs(Launcher& launcher, const Sweep& sweep, JobStates begun, const
     if (gone) continue;
     for (const std::size_t job : state.returned) {
       const std::filesystem::path directory = job_directory(sweep, sweep.jobs[job]);
-      // Only the record is read, because other files are written after its end, and NFS may delay them by a minute.
+      // Only the record is read, because other files are written after its last line, and NFS may delay them by a
+      // minute.
       const RunStatus now = read_ending(directory);
       const bool done = now.state == RunStatus::State::done;
       // On a full disk, not even the failure can be recorded.

@@ -54,8 +54,8 @@ void reopen_failed(JobStates& standing);
 /// cancelled. `progress` is called after each event and at least every half second.
 ///
 /// Returns whether all ended jobs have a record of their end and, if they ran on this machine, all their files. On a
-/// full disk they may not. Throws Error if the sweep's directory is moved or removed meanwhile, after cancelling the
-/// jobs.
+/// full disk, records or files may be missing. Throws Error if the sweep's directory is moved or removed meanwhile,
+/// after cancelling the jobs.
 bool execute_jobs(Launcher& launcher, const Sweep& sweep, JobStates begun, const std::atomic<bool>* interrupted,
                   const std::function<void(const SweepProgress&)>& progress);
 

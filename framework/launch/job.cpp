@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Takes the lock of the job; nullopt if another process has it.
+/// Locks the job. Returns null if another process holds the lock.
 std::shared_ptr<RunDirectory> hold(const fs::path& directory) {
   std::shared_ptr<RunDirectory> held;
   const std::optional<Error> trouble = catch_error([&] { held = std::make_shared<RunDirectory>(directory); });

@@ -31,17 +31,18 @@ enum class JobEnd {
 inline constexpr const char* kBlocked = "blocked";
 
 /// Runs the job in `directory`, whose name is the job's id. Does nothing if the job is done, or has failed and
-/// options.retry_failed is false. An error becomes the reason of a recorded failure, except for a deleted config, which
-/// `palpate sweep` writes again.
+/// options.retry_failed is false. An error is recorded as a failure of the job, unless the config was deleted: `palpate
+/// sweep` writes it again.
 ///
-/// Throws Error if nothing can be recorded, or if a file of a done job cannot be written. Throws Error (busy) if
-/// another process uses the arm, or if the external program has changed.
+/// Throws Error if nothing can be recorded, or if a missing file of a done job cannot be restored. Throws Error (busy)
+/// if another process uses the arm, or if the external program has changed.
 JobEnd run_job(const RunEnvironment& environment, const std::filesystem::path& directory, const ResumeOptions& options);
 
 /// Returns whether the job is done or has failed.
 bool has_ended(const std::filesystem::path& directory);
 
-/// Returns the number of attempts since the job last ended, according to its record.
+/// Returns the number of attempts in the last series of attempts that have no `end` between them, according to the
+/// record.
 int attempts_of(const std::filesystem::path& directory);
 
 /// Records a failure of a job whose process died, unless the job has ended or another process runs it.

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 // The interface of launchers, which run the jobs of a sweep on this machine or on a cluster. A launcher accepts jobs
 // and reports when they have ended. Only the directory of a job shows whether the job is done, because schedulers may
-// report wrong states. The job itself (launch/job.hpp) guarantees that it runs only once, also when several launchers
-// hold it.
+// report wrong states. The job itself (launch/job.hpp) guarantees that it runs only once, even if several launchers
+// have accepted it.
 //
-// A new launcher NAME is a file launch/NAME_launcher.cpp that defines the LauncherType NAME_launcher, and its name in
-// the table of palpate_sweep.cmake.
+// To add a launcher NAME, define the LauncherType NAME_launcher in launch/NAME_launcher.cpp, and add NAME to the table
+// in palpate_sweep.cmake.
 #pragma once
 
 #include "record/run.hpp"
@@ -26,10 +26,10 @@ class Launcher {
   struct State {
     std::vector<std::size_t> returned;  ///< jobs that ended or were abandoned since the last call
     bool all_recorded = true;           ///< false: a returned job could not record its end or write its files
-    bool blocked =
-        false;        ///< a job could not start, for a reason that also applies to all other jobs; no job is waiting
+    /// A job could not start, for a reason that also applies to all waiting jobs. They were dropped.
+    bool blocked = false;
     int running = 0;  ///< number of running jobs, as far as the launcher can see
-    int waiting = 0;  ///< number of jobs
+    int waiting = 0;  ///< number of waiting jobs
     bool empty_handed() const { return running == 0 && waiting == 0; }
   };
 
@@ -46,7 +46,7 @@ class Launcher {
   /// Stops running jobs after their current tap and drops waiting jobs. poll() still returns the running jobs.
   virtual void cancel() = 0;
 
-  /// Returns the command that ends the jobs that outlive this process; "" if no job does.
+  /// Returns the shell command with which a user can end the jobs that outlive this process; "" if no job outlives it.
   virtual std::string stop_command() const { return {}; }
 };
 
@@ -59,10 +59,10 @@ struct ClusterOptions {
 struct LaunchOptions {
   int workers = 1;              ///< parallel jobs; on a cluster: parallel jobs of one task, each with its own core
   ResumeOptions resume;         ///< options of every job
-  int most_attempts = 3;        ///< starts per job; a job that was killed this often has failed
+  int most_attempts = 3;        ///< limit per job; a job killed in its last attempt has failed
   bool wait_for_others = true;  ///< waits for jobs that other processes run, and runs them if those processes die
   // Only for clusters:
-  bool one_at_a_time = false;  ///< runs one task at a time, over all arrays
+  bool one_at_a_time = false;  ///< runs only one task of all arrays at a time
   ClusterOptions cluster{};
   int jobs_per_task = 1;
 };
@@ -96,7 +96,7 @@ struct LauncherType {
 /// The launcher of this machine. All others are clusters, where jobs continue without this process.
 inline constexpr const char* kLocal = "local";
 
-/// The names in the table of launchers (palpate_sweep.cmake). A program needs no launcher to read them.
+/// The names in the table of launchers (palpate_sweep.cmake). A program can use them without linking the launchers.
 inline constexpr std::array kLaunchers{
 #define PALPATE_LAUNCHER(name) #name,
 #include "launch/launcher_table.inc"

@@ -123,7 +123,7 @@ void LocalLauncher::conclude(std::size_t job, const ChildProcess& process, State
 }
 
 void LocalLauncher::was_killed(std::size_t job, int signal, State& state) {
-  // Kills before the first record of an attempt count, too. Otherwise such a job would start again forever.
+  // Kills before the attempt is recorded count, too. Otherwise such a job would start again forever.
   const int attempts = std::max(attempts_of(directory_of(job)), ++kills_[job]);
   const std::string name = fmt::format("signal {} ({})", signal, ::strsignal(signal));
   if (is_crash(signal)) {

@@ -36,7 +36,7 @@ class LocalLauncher final : public Launcher {
 
   /// Starts a job. Returns false if the limit of processes or files is reached while other jobs run.
   bool start(std::size_t job);
-  /// Runs in the child process.
+  /// Runs the job; called in its child process.
   JobEnd run(std::size_t job) const;
   void conclude(std::size_t job, const ChildProcess& process, State& state);
   void was_killed(std::size_t job, int signal, State& state);

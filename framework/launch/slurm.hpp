@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The interface to Slurm: calls of sbatch, squeue, scontrol and scancel, and the parsing of their output. A task is one
-// index of a job array. This file does not know the jobs of a sweep.
+// index of a job array. Nothing in this file depends on the jobs of a sweep.
 #pragma once
 
 #include <optional>
@@ -39,8 +39,8 @@ struct Submission {
   std::string doubt;  ///< message of sbatch if no node can run the array now; else ""
 };
 /// Submits an array: `sbatch` with `words`. Throws Error with the message of sbatch. sbatch does not distinguish an
-/// array that can never run from an array that waits for drained nodes. Both are submitted, and `doubt` contains its
-/// message.
+/// array that can never run from an array that waits for drained nodes. Both are submitted, and `doubt` contains the
+/// message of sbatch.
 Submission submit(const std::vector<std::string>& words);
 
 /// Returns this user's tasks. Throws Error if squeue does not answer.

@@ -58,8 +58,8 @@ class SlurmLauncher final : public Launcher {
   explicit SlurmLauncher(LaunchOrder order) : order_(std::move(order)) {}
 
   /// Writes the script and the list of jobs per task into slurm/N in the sweep's directory, and submits them. Slurm
-  /// writes the logs there. Throws Error if Slurm does not answer or rejects an array. Arrays passed to
-  /// LaunchOrder::submitted remain in the queue.
+  /// writes the logs there. Throws Error if Slurm does not answer or rejects an array. Arrays that were already passed
+  /// to LaunchOrder::submitted then remain in the queue.
   void submit(const std::vector<std::size_t>& jobs) override {
     if (jobs.empty()) return;
     const auto most = static_cast<std::size_t>(slurm::most_tasks());
@@ -87,8 +87,8 @@ class SlurmLauncher final : public Launcher {
     }
   }
 
-  /// Returns jobs whose results exist, and all jobs once the queue has no task left. Throws Error if Slurm has not
-  /// answered for ten minutes.
+  /// Returns jobs whose records have an end, and all jobs once the queue has no task of these arrays left. Throws Error
+  /// if Slurm has not answered for ten minutes.
   State poll(double seconds) override {
     State state;
     if (open_.empty()) return state;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A run for Python in which the calling program makes the taps: ask() returns a tap, and tell() takes its result.
+// A run for Python in which the calling program makes the taps: ask() returns a tap to make, and tell() takes its
+// result.
 #pragma once
 
 #include "answers/tap_result_checks.hpp"
@@ -21,8 +22,8 @@
 
 namespace palpate {
 
-/// A run in which the calling program makes the taps. Any thread that holds the GIL may call the methods. One thread at
-/// a time uses the run.
+/// A run in which the calling program makes the taps. Any thread that holds the GIL may call the methods. A lock lets
+/// only one thread at a time use the run.
 class AskTellRun {
  public:
   AskTellRun(const std::string& config, const std::vector<std::string>& overrides, const std::string& runs,
@@ -61,8 +62,8 @@ class AskTellRun {
     const ObjectGuard guard(lock_);
     return to_json(open().finish().summary);
   }
-  /// Closes the record, even if an exception is thrown. If `finish` is set, ends the run before, unless a tap is
-  /// pending. A run that has not ended can be resumed later. In the child of a fork, the function does nothing.
+  /// Closes the record, even if an exception is thrown. If `finish` is set and no tap is pending, ends the run first. A
+  /// run that has not ended can be resumed later. In the child of a fork, this function does nothing.
   void close(bool finish) {
     if (!lock_.is_here()) return;
     const ObjectGuard guard(lock_);
@@ -78,14 +79,14 @@ class AskTellRun {
     const ObjectGuard guard(lock_);
     return open().experiment().counts().taps;
   }
-  /// Returns a copy of the present values of a quantity. They form a map, or a single row if the candidates are not on
-  /// a grid.
+  /// Returns a copy of the current values of a quantity: a map with one row per y and one column per x, or a single row
+  /// if the candidates are not on a grid.
   Map map(const std::string& quantity) {
     const ObjectGuard guard(lock_);
     const Eigen::VectorXd& values = open().look({quantity}).values(quantity);
     return has_grid() ? Map{values, rows(), columns()} : Map{values, 1, static_cast<int>(values.size())};
   }
-  /// Returns one row per candidate line: start, direction and length at present.
+  /// Returns the current candidate lines, one per row: start (x, y, z), direction (x, y, z) and length; metres.
   Map lines() {
     const ObjectGuard guard(lock_);
     const Candidates& lines = open().look({}).candidates();
@@ -104,7 +105,7 @@ class AskTellRun {
   const Eigen::VectorXd& ys() const { return ys_; }
 
  private:
-  /// Sets the properties that stay the same during the run.
+  /// Sets the properties that do not change during the run.
   void describe() {
     directory_ = run_->directory().string();
     if (const Tree* label = run_->config().tree.find_path("backend.label")) label_ = label->text;
@@ -115,7 +116,7 @@ class AskTellRun {
   int rows() const { return static_cast<int>(ys_.size()); }
   int columns() const { return static_cast<int>(xs_.size()); }
 
-  /// Returns the run, or throws Error if the run is finished. Throws Error for a finished one.
+  /// Returns `run`, which was just started or resumed. Throws Error if it is already finished.
   static std::unique_ptr<Run> started(std::unique_ptr<Run> run) {
     if (!run->is_finished()) return run;
     throw Error(run->finish().directory.string(), "this run is finished",
@@ -157,7 +158,7 @@ inline TapResult result_of(const std::string& outcome, std::optional<double> hei
                 "use contact, no_contact, unreachable, timeout or aborted");
   }
   TapResult out = tap_without_contact(*known, seconds, reason, ends_run);
-  // The height determines the touched point only if the line comes from above.
+  // The height is only the z coordinate of the touched point. x and y follow from the line if the tap comes from above.
   constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
   if (height) out.contact.emplace(kUnknown, kUnknown, *height);
   if (contact) out.contact.emplace((*contact)[0], (*contact)[1], (*contact)[2]);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The module palpate._palpate. It reads records, recomputes their models, and runs experiments. Only
-// palpate/__init__.py uses this module; that file is the documented interface.
+// The Python module palpate._palpate. It reads records, recomputes their models, and runs experiments. Only the package
+// `palpate` uses this module; palpate/__init__.py is the documented interface.
 #include "ask_tell_run.hpp"
 #include "config/quantity.hpp"
 #include "module_host.hpp"
@@ -28,8 +28,8 @@
 namespace palpate {
 namespace {
 
-/// Calls a Python function after every tap of a run, in the thread of the run. Interrupts the run after Ctrl-C, and
-/// after an exception of the function.
+/// Calls a Python function after every tap of a run, in the thread of the run. Interrupts the run after Ctrl-C, and if
+/// the function raises an exception.
 class ProgressObserver final : public Observer {
  public:
   ProgressObserver(std::atomic<bool>& interrupted, py::object progress)
@@ -108,7 +108,7 @@ std::vector<std::tuple<std::string, std::string, std::string>> tap_fields() {
   return out;
 }
 
-/// Returns a message of the program in which force=True replaces the option --force. Commands in quotes are not
+/// Returns `text`, a message of the program, with force=True instead of the option --force. Commands in quotes are not
 /// changed.
 std::string in_python(const std::string& text) {
   std::string out;
@@ -127,7 +127,7 @@ Array vector_of(const Eigen::VectorXd& values) { return Array(values.size(), val
 
 /// Defines palpate.Error and palpate.InputError, and translates the C++ exception Error to them.
 void bind_errors(py::module_& module) {
-  // palpate/__init__.py sets the documentation strings of both.
+  // palpate/_errors.py sets the documentation strings of both classes.
   static PyObject* const error = PyErr_NewException("palpate.Error", PyExc_Exception, nullptr);
   module.attr("Error") = py::handle(error);
   static PyObject* const input_error = PyErr_NewException(
@@ -208,7 +208,7 @@ void bind_tap(py::module_& module) {
 }
 
 void bind_ask_tell_run(py::module_& module) {
-  // Arrays are read-only, because changes of an array would have no effect on the belief.
+  // Arrays are read-only, because changing an array would have no effect on the belief.
   const auto fixed = [](Array out) {
     out.attr("setflags")(py::arg("write") = false);
     return out;

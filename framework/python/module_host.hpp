@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The installation of this module, and the plugin host. All runs of the process share both.
+// The installation of this module, and the plugin host. All runs of the process share these two objects.
 #pragma once
 
 #include "config/compose.hpp"
@@ -56,8 +56,8 @@ inline std::vector<Override> parsed_overrides(const std::vector<std::string>& ov
   return parsed;
 }
 
-/// Returns a new composer. A composer caches the files that it reads, and only one thread may use it. Each call
-/// therefore needs a new composer.
+/// Returns a new composer. A composer caches the files that it reads, and only one thread may use it. Each call of the
+/// module therefore needs a new composer.
 inline Composer composer() { return Composer(module_environment().installation.configs, config_keys()); }
 
 inline ResolvedConfig resolve(const std::string& config, const std::vector<std::string>& overrides) {

@@ -24,7 +24,7 @@ namespace palpate {
 
 using NamedMaps = std::vector<std::pair<const char*, Map>>;
 
-/// Returns those of the maps that the belief offers at present. Heights are in metres.
+/// Returns the maps that the belief currently offers, and the surface. Heights are in metres.
 inline NamedMaps maps_of(Experiment& experiment) {
   experiment.look();
   Belief& belief = experiment.belief();
@@ -43,8 +43,8 @@ inline NamedMaps maps_of(Experiment& experiment) {
   return out;
 }
 
-/// The record of a run, and its models. Any thread that holds the GIL may call the methods. One thread at a time uses
-/// the models.
+/// The record of a run, and its models. Any thread that holds the GIL may call the methods. A lock lets only one thread
+/// at a time use the models.
 class Record {
  public:
   explicit Record(const std::string& directory)
@@ -76,8 +76,8 @@ class Record {
     if (taps < 0 || taps > size())
       throw Error("after", "there are " + std::to_string(size()) + " taps, not " + std::to_string(taps), "take fewer");
     const ObjectGuard guard(lock_, "run");
-    // After an exception, the models may contain a tap that taps() does not count. The models are therefore stored
-    // again only after success.
+    // After an exception, the models may contain a tap that RunReplay::taps() does not count. Therefore, the models are
+    // moved out first, and stored again only after success.
     std::unique_ptr<RunReplay> models = std::move(playback_);
     if (!models || models->taps() > taps) models = make_replay();
     models->advance_to(taps);
@@ -86,8 +86,7 @@ class Record {
     return maps;
   }
 
-  /// Returns the heights of the simulated scene in metres. Returns nullopt if the taps were not made in the simulated
-  /// scene.
+  /// Returns the heights of the simulated scene in metres; nullopt if the taps were not made in a simulated scene.
   std::optional<Map> truth() {
     const ObjectGuard guard(lock_, "run");
     Experiment& experiment = playback().experiment();
@@ -125,15 +124,15 @@ class Record {
   std::unique_ptr<RunReplay> playback_;
 };
 
-/// A sweep, or several sweeps and runs that are read as one sweep (see read_pooled()). The object has the state at the
-/// time when it was opened.
+/// A sweep, or several sweeps and runs that are pooled into one sweep (see read_pooled()). The list of jobs is read
+/// when the object is created.
 class SweepRecord {
  public:
   explicit SweepRecord(const std::vector<std::string>& directories)
       : SweepRecord(read_pooled({directories.begin(), directories.end()}, {})) {}
 
   std::string directory() const { return sweep_.directory.string(); }
-  /// Notes about whether several records are comparable, one line each.
+  /// Returns notes about whether the pooled records are comparable, one line each.
   const std::vector<std::string>& notes() const { return notes_; }
   std::size_t size() const { return sweep_.jobs.size(); }
   const std::vector<std::string>& keys() const { return sweep_.keys; }

@@ -21,8 +21,8 @@
 
 namespace palpate {
 
-/// Counts the calls from Python that run without the GIL, the global lock of Python. After the interpreter has ended,
-/// no thread may request the GIL: CPython 3.11 would unwind the stack of the thread, and C++ would then call
+/// Counts the calls from Python that run without the GIL (Python's global interpreter lock). After the interpreter has
+/// ended, no thread may request the GIL: CPython 3.11 would unwind the stack of the thread, and C++ would then call
 /// std::terminate().
 class CallsWithoutGil {
  public:
@@ -34,10 +34,10 @@ class CallsWithoutGil {
   /// Returns whether another thread is ending the interpreter. The calling thread can then never get the GIL again.
   bool ended() const { return ending_ && std::this_thread::get_id() != last_; }
 
-  /// Ends all calls. The thread that ends the interpreter must call this function, while it holds the GIL. The function
-  /// returns when no other thread is in a call. Other threads that return from a call, and all later calls, then wait
-  /// for the end of the process. If a signal such as Ctrl-C arrives, the function throws its exception. The process
-  /// then ends without waiting for the remaining calls.
+  /// Waits until no other thread is in a call. The thread that ends the interpreter must call this function while it
+  /// holds the GIL. From then on, other threads that return from a call or begin one wait for the end of the process.
+  /// If a signal such as Ctrl-C arrives, throws the exception of the signal. The process then ends without waiting for
+  /// the remaining calls.
   void end() {
     last_ = std::this_thread::get_id();
     ending_ = true;
@@ -46,15 +46,16 @@ class CallsWithoutGil {
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
       PyEval_RestoreThread(state);
       if (PyErr_CheckSignals() == 0) continue;
-      // The remaining calls must not run while exit() destroys static objects, so the process ends before.
+      // The remaining calls must not run while exit() destroys static objects, so the process ends before exit() does
+      // this.
       ::on_exit([](int status, void*) { static_cast<void>(std::fflush(nullptr)), ::_exit(status); }, nullptr);
       throw pybind11::error_already_set();
     }
   }
 
-  /// Calls the Python function `function(number)` from within a call, and holds the GIL meanwhile. Throws the exception
-  /// of the function. The end of the interpreter does not wait for the function. If the interpreter ends meanwhile,
-  /// this thread never returns.
+  /// Calls the Python function `function(number)` from within a call. The caller must hold the GIL. Throws the
+  /// exception of the function. The end of the interpreter does not wait for the function. If the interpreter ends
+  /// while the function runs, this thread never returns.
   void call_back(const pybind11::object& function, int number) {
     Callback callback;
     PyObject* const result = PyObject_CallFunction(function.ptr(), "i", number);
@@ -67,7 +68,7 @@ class CallsWithoutGil {
   friend class GilRelease;
 
   CallsWithoutGil() {
-    // The child of a fork has only the thread that forked.
+    // The child of a fork has only the thread that forked, so only its calls count there.
     ::pthread_atfork(nullptr, nullptr, [] { all().inside_ = depth_; });
   }
   void enter() {
@@ -83,8 +84,8 @@ class CallsWithoutGil {
     for (;;) ::pause();
   }
 
-  /// A call from C++ to a Python function. During it, the thread does not count as inside a call. The thread must hold
-  /// the GIL at the beginning and at the end.
+  /// A call from C++ to a Python function. During this call, the thread does not count as inside a call from Python.
+  /// The thread must hold the GIL at the beginning and at the end.
   struct Callback {
     Callback() : depth(std::exchange(depth_, 0)) { all().inside_ -= depth; }
     ~Callback() {
@@ -101,14 +102,14 @@ class CallsWithoutGil {
     bool has_returned = false;
   };
 
-  /// depth of nested calls in this thread, because a callback may call the module again
+  /// number of nested calls in this thread; more than 1 if a callback calls the module again
   static inline thread_local int depth_ = 0;
   std::atomic<int> inside_{0};  ///< number of calls in all threads
   std::atomic<bool> ending_{false};
   std::thread::id last_;  ///< the thread that ends the interpreter
 };
 
-/// Releases the GIL as long as the object exists, so that other Python threads can run.
+/// Releases the GIL while the object exists, so that other Python threads can run.
 class GilRelease {
  public:
   GilRelease() {
@@ -137,11 +138,11 @@ inline void check_signals() {
   if (PyErr_CheckSignals() != 0) throw pybind11::error_already_set();
 }
 
-/// Lock of an object that only one thread at a time may use, and only in the process that created the object.
+/// Lock of an object. Only one thread at a time may use the object, and only in the process that created the object.
 class ObjectLock {
  public:
-  /// Returns whether this is the process that created the object, and not the child of a fork. The child lacks threads
-  /// that the object may need, and the lock may be locked for ever in the child.
+  /// Returns whether this is the process that created the object, and not the child of a fork. In the child, threads
+  /// that the object may need do not exist, and the lock may stay locked for ever.
   bool is_here() const { return process_ == ::getpid(); }
 
  private:
@@ -150,7 +151,8 @@ class ObjectLock {
   std::mutex mutex_;
 };
 
-/// Holds an ObjectLock without holding the GIL. In the child of a fork, throws Error with `place`.
+/// Releases the GIL and holds an ObjectLock while the object exists. The constructor throws Error with `place` in the
+/// child of a fork.
 class ObjectGuard {
  public:
   explicit ObjectGuard(ObjectLock& lock, const std::string& place = "experiment") {

@@ -22,21 +22,22 @@ namespace py = pybind11;
 
 using Array = py::array_t<double>;
 
-/// The values of a quantity over the candidates.
+/// The values of a quantity at all candidates, row by row.
 struct Map {
   Eigen::VectorXd values;
   int rows;
   int columns;
 };
 
-/// Returns an array of rows x columns, which owns the values.
+/// Returns a NumPy array of rows x columns, which owns the values.
 inline Array array_of(Map map) {
   auto* const kept = new Eigen::VectorXd(std::move(map.values));
   const py::capsule owner(kept, [](void* values) { delete static_cast<Eigen::VectorXd*>(values); });
   return Array({map.rows, map.columns}, kept->data(), owner);
 }
 
-/// Converts a value of a config: numbers, truth values and texts. Quantities with a unit become texts.
+/// Converts a config to Python: maps to dicts, lists, numbers, truth values and texts. Quantities with a unit become
+/// texts.
 inline py::object python_of(const Tree& tree) {
   switch (tree.kind) {
     case Tree::Kind::null:
@@ -77,7 +78,7 @@ inline py::object python_of(const Scalar& scalar) {
       scalar);
 }
 
-/// A column of a table: name and values. The value is None in a row without a value.
+/// A column of a table: its name and its values, which are None in rows without a value.
 using Column = std::pair<std::string, py::list>;
 
 inline std::vector<Column> columns_of(const std::vector<Row>& rows) {

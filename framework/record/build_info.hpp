@@ -43,8 +43,8 @@ std::string build_text(const Installation& installation);
 /// and commits without changes of code do not change it.
 std::string build_hash(const PluginHost& host, const PluginNames& plugins);
 
-/// Returns version, commit (of the last build; dirty or not), compiler, instruction path, library versions, plugins and
-/// host.
+/// Returns the manifest's description of this program: version, commit of the last build, whether it had uncommitted
+/// changes, build hashes, compiler, instruction path, library versions, plugins and host.
 Tree describe_build(const Installation& installation, const PluginHost& host, const PluginNames& plugins,
                     const std::string& instruction_path);
 

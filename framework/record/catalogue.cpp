@@ -86,8 +86,8 @@ Row known_settings(const fs::path& directory) {
   return out;
 }
 
-/// Returns the Error for a name that several records have. It lists the last few with the settings that distinguish
-/// them, and the number of the others.
+/// Returns the Error for a name that several records have. The message lists the most recent records with the settings
+/// that distinguish them, and the number of the others.
 Error several(const std::string& words, const std::string& base, std::vector<fs::path> records) {
   constexpr std::size_t kShown = 4;
   const std::size_t all = records.size();

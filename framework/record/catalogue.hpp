@@ -13,9 +13,9 @@
 
 namespace palpate {
 
-/// The content of a folder of runs, three levels deep: runs/NAME/ID and one level above. Links and hidden folders,
-/// where sweeps are prepared, are skipped. Runs and sweeps are not entered, so the jobs of a sweep do not count as
-/// runs.
+/// The runs and sweeps in a folder, up to three levels below it. This suffices for runs/NAME/ID, even if the folder is
+/// the parent of `runs`. Links and hidden folders, where sweeps are prepared, are skipped. Runs and sweeps are not
+/// entered, so the jobs of a sweep do not count as runs.
 struct Catalogue {
   std::vector<std::filesystem::path> records;  ///< directories of runs and sweeps, in the order of their start
   int strangers = 0;                           ///< subfolders without a record below them and without a README.md
@@ -43,7 +43,7 @@ std::vector<std::string> differing_keys(const std::vector<Row>& configs);
 /// The kind of record that a command accepts; records of the other kind are ignored if one of this kind exists.
 enum class Wanted { run, sweep, any };
 
-/// Returns the directory of the record that `words` name. The meanings are tried in this order:
+/// Returns the directory of the record that `words`, the user's argument, name. The meanings are tried in this order:
 ///
 /// 1. an existing path: a record, or a folder that contains one;
 /// 2. the name of a run: `name` of its config, or its folder in `runs`. A folder of this name that contains no record
@@ -51,7 +51,8 @@ enum class Wanted { run, sweep, any };
 /// 3. a path or name followed by @latest, which stands for the record that was started last.
 ///
 /// Returns a path without a record unchanged; the caller then reports what is missing there. Throws Error for an
-/// unknown name. Throws Error for several records, with the settings that distinguish the last ones.
+/// unknown name. Throws Error if several records match; the message lists the most recent ones and the settings that
+/// distinguish them.
 std::filesystem::path find_record(const std::string& words, Wanted wanted = Wanted::any,
                                   const std::filesystem::path& runs = "runs");
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The state of a recorded run to evaluate: after a number of taps, or after the first tap that reached a goal.
+// The point at which a recorded run is evaluated: after a number of taps, or after the first tap that reached a goal.
 #pragma once
 
 #include "record/row.hpp"
@@ -35,7 +35,7 @@ class Checkpoint {
  private:
   std::optional<int> taps_;
   std::string field_;
-  double goal_ = 0.0;  ///< SI
+  double goal_ = 0.0;  ///< in SI units
   bool less_ = true;   ///< whether less is better
   std::string words_, key_;
 };

@@ -45,8 +45,8 @@ Setting setting(const std::string& name, std::vector<std::string> words, int ran
   return out;
 }
 
-/// Returns, for each run, its groups of this kind that some other run lacks; all its groups of this kind if there are
-/// none.
+/// Returns, for each run, its groups of this kind that at least one other run lacks, or all its groups of this kind if
+/// every run has all of them. Returns nothing if a run has no group of this kind.
 std::vector<std::string> group_words(const std::vector<RecordedSettings>& runs, const std::string& kind) {
   std::map<std::string, std::size_t> counts;
   for (const RecordedSettings& run : runs) {

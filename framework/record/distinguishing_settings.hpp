@@ -21,9 +21,10 @@ struct RecordedSettings {
 std::map<std::string, std::set<std::string>> recorded_groups(const std::map<std::string, std::string>& origins);
 
 /// Returns up to three settings such as "scene ring" or "taps 30" for each of these runs of one name. The first setting
-/// distinguishes the run from the most other runs, the second from the most of the remaining ones. Further settings
-/// come from other blocks of the config that differ. On a tie the seed comes first, and a group comes before its
-/// values. Settings that are equal in all runs, or missing in this run, are never returned.
+/// distinguishes the run from as many other runs as possible, the second from as many of the remaining runs as
+/// possible. Settings that distinguish no further run come from blocks of the config without a setting so far. On a tie
+/// the seed comes first, and a group comes before its values. Settings that are equal in all runs, or missing in this
+/// run, are never returned.
 std::vector<std::vector<std::string>> distinguishing_settings(const std::vector<RecordedSettings>& runs);
 
 }  // namespace palpate

@@ -39,7 +39,7 @@ struct Expectation {
 std::vector<Expectation> read_expectations(const Tree* expect);
 
 /// Returns the expectations as a flat map of texts, which read_expectations() reads as the same expectations. Adds the
-/// place of each to `notes`.
+/// source location of each expectation to `notes`.
 Tree resolved_expect(const Tree& expect, ResolveNotes& notes);
 
 /// Returns the names of the statistics: mean, median, min, max, p5, ...

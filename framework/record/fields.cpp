@@ -385,7 +385,8 @@ std::optional<int> count_objects(const Summary& summary, Holds holds) {
   return static_cast<int>(std::count_if(summary.objects->begin(), summary.objects->end(), holds));
 }
 
-/// Returns `sum_up` of a measure over all objects that have a value of it; nullopt if no object has one.
+/// Returns the result of `sum_up` for the values of a measure over all objects that have one; nullopt if no object has
+/// one.
 template <class SumUp>
 std::optional<double> over_objects(const Summary& summary, std::optional<double> ObjectErrors::*value, SumUp sum_up) {
   std::vector<double> values;

@@ -35,7 +35,7 @@ inline constexpr const char* kExpectedError = "expected_rmse_m";
 struct TapTimes {
   int tap = 0;
   std::array<double, kPhases> seconds{};
-  std::optional<double> expected_rmse = std::nullopt;  ///< before the tap, metres; only if a display showed it
+  std::optional<double> expected_rmse = std::nullopt;  ///< metres, before the tap; only if a display showed it
 };
 
 /// One object in the line `objects`.
@@ -59,8 +59,8 @@ const std::vector<RecordField>& summary_fields();
 /// Returns the field of the summary with this name; null if there is none.
 const RecordField* find_summary_field(const std::string& name);
 
-/// Returns the dimension of a column of results.csv. Fields of the summary have theirs in the list; other columns have
-/// it from the end of their name, `_m` or `_seconds`.
+/// Returns the dimension of a column of results.csv. The list of fields defines it for fields of the summary. For other
+/// columns, the end of the name defines it: `_m` or `_seconds`.
 Unit unit_of_column(const std::string& name);
 
 /// Whether a field of the summary depends on clock, memory or machine rather than on the config.

@@ -29,8 +29,8 @@ Error failed(const fs::path& file, const char* action) {
 
 [[noreturn]] void fail(const fs::path& file, const char* action) { throw failed(file, action); }
 
-/// Opens a file with a descriptor above those of the standard streams, because a process may be started without the
-/// streams.
+/// Opens a file with a descriptor above those of the standard streams. If the process was started without these
+/// streams, the file would otherwise become one of them.
 Descriptor open_file(const fs::path& file, int flags) {
   // O_NONBLOCK: if the path is a pipe, do not wait for the process at its other end.
   return above_standard(::open(file.c_str(), flags | O_CLOEXEC | O_NONBLOCK | O_NOCTTY, 0666));
@@ -59,7 +59,7 @@ bool flush_file(const Descriptor& file) {
 
 void sync_folder(const fs::path& folder) {
   const Descriptor opened = open_file(folder, O_RDONLY | O_DIRECTORY);
-  if (!opened && errno == EACCES) return;  // belongs to another user, so this process did not make it
+  if (!opened && errno == EACCES) return;  // another user's folder: this process did not make it
   // Errors of file systems that cannot sync folders (EINVAL) or are read-only (EROFS).
   const auto needs_none = [] { return errno == EINVAL || errno == EROFS; };
   if (!opened || (::fsync(opened.number()) != 0 && !needs_none())) fail(folder, "cannot be synced");
@@ -354,7 +354,7 @@ bool FileLock::is_held(const fs::path& file) {
   if (!in && shows_nothing(errno)) return false;
   struct flock other = kWholeFile;
   if (in && ::fcntl(in.number(), F_OFD_GETLK, &other) == 0) return other.l_type != F_UNLCK;
-  // Without locks in the file system, no process holds one.
+  // If the file system has no locks, no process holds a lock.
   const bool keeps_none = in && (errno == ENOLCK || errno == ENOSYS || errno == EINVAL || errno == EOPNOTSUPP);
   if (!keeps_none) fail(file, "cannot be accessed");
   return false;

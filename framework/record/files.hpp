@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Writes files that stay intact if the process is killed: write_file() renames a complete temporary file, and
 // AppendFile appends line by line. Also locks files; a lock ends with its process. Another user may have made the
-// folders, so no function follows a link in the place of a file that it writes.
+// folders, so the functions do not follow a symbolic link at the path of a file that they write.
 #pragma once
 
 #include "children/child_process.hpp"
@@ -20,8 +20,8 @@
 namespace palpate {
 
 /// Writes `text` to a temporary file, closes it and renames it to `file`. Readers see the old or the new content, never
-/// a part; a link is replaced. With `sync` content and name are on the disk on return. Throws Error; `file` is then
-/// unchanged, unless only the sync of its folder failed.
+/// a part; if `file` is a link, the link is replaced. With `sync`, the content and the name of the file are on the disk
+/// on return. Throws Error; `file` is then unchanged, unless only the sync of its folder failed.
 void write_file(const std::filesystem::path& file, const std::string& text, bool sync = false);
 
 /// A locked temporary file that publish() renames to its final name `file`. It is created empty next to `file`, as
@@ -47,7 +47,7 @@ class TemporaryFile {
 /// Removes the temporary files in `folder` that no process holds locked: their writers were killed.
 void remove_temporaries(const std::filesystem::path& folder);
 
-/// Syncs the names in `folder`, and in each folder above it, to the disk. Throws Error.
+/// Syncs the directory entries of `folder`, and of each folder above it, to the disk. Throws Error.
 void sync_names(const std::filesystem::path& folder);
 
 /// Whether `path` exists and this user may access it. Throws Error if the file system fails.
@@ -68,25 +68,25 @@ std::filesystem::path make_inner_folder(const std::filesystem::path& folder);
 /// if the file system fails.
 std::string read_file(const std::filesystem::path& file, std::uintmax_t most_bytes = kMostLogBytes);
 
-/// Returns the content of a file; nullopt if is_there() is false. Files of the user and of the installation may be
-/// links.
+/// Returns the content of a file; nullopt if is_there() is false. The file may be a link if `origin` is `user`, but not
+/// if it is `record`.
 std::optional<std::string> read_if_there(const std::filesystem::path& file, std::uintmax_t most_bytes = kMostLogBytes,
                                          Origin origin = Origin::record);
 
 /// Returns the first line of a file that grows by lines, without its line end, and reads only the beginning of the
-/// file. Returns nullopt without a file or a complete line. Throws Error as read_if_there() does.
+/// file. Returns nullopt if there is no file or no complete line. Throws Error as read_if_there() does.
 std::optional<std::string> first_line_if_there(const std::filesystem::path& file);
 
 /// The last complete line of a file that grows by lines.
 struct LastLine {
   std::uintmax_t bytes = 0;  ///< size of the file
-  std::uintmax_t whole =
-      0;             ///< size of its complete lines; bytes after them are a line that a kill or a full disk cut off
+  /// bytes of all complete lines; the rest of the file is a line that a kill or a full disk cut off
+  std::uintmax_t whole = 0;
   std::string text;  ///< the last complete line, without its line end; "" if there is none
 };
 
-/// Returns the last complete line and reads only the end of the file. Returns nullopt without a file. Throws Error as
-/// read_if_there() does.
+/// Returns the last complete line, and reads only the end of the file. Returns nullopt if there is no file. Throws
+/// Error as read_if_there() does.
 std::optional<LastLine> last_line_if_there(const std::filesystem::path& file);
 
 /// A file that only grows, by complete lines.
@@ -96,9 +96,10 @@ class AppendFile {
   /// Opens `file`, or makes it if it does not exist. Throws Error.
   explicit AppendFile(const std::filesystem::path& file);
 
-  /// Appends `text` with one system call; with `sync` the text is on the disk on return. Throws Error, and deletes a
-  /// text that was written only in part. If that deletion, a sync or a flush fails, each further call throws the same
-  /// Error: the kernel has dropped the data, and a second sync would report success.
+  /// Appends `text` with one system call; with `sync` the text is on the disk on return. Throws Error; a part of the
+  /// text that was written is then removed again. If this removal, a sync or flush() fails, each further call of
+  /// append() and flush() throws the same Error: the kernel has dropped the data, and a second sync would report
+  /// success.
   void append(const std::string& text, bool sync);
 
   /// Truncates the file to its first `bytes`. Throws Error.
@@ -113,12 +114,13 @@ class AppendFile {
 
   std::filesystem::path file_;
   Descriptor descriptor_;
-  std::optional<Error> failure_;  ///< error of an earlier call; later calls of append() throw it again
+  std::optional<Error> failure_;  ///< error of an earlier call; append() and flush() throw it again
 };
 
-/// A lock of the kernel on a file. The lock ends when the process has ended, normally or by a kill, and so have all
-/// children that were forked while it held the lock. Programs that these processes start do not inherit the lock. The
-/// lock also works between machines if their file system has locks (NFS; Lustre mounted with `flock`).
+/// A lock of the kernel on a file. The destructor releases it. Without the destructor, for example after a kill, the
+/// lock ends once the process and all children that it forked while it held the lock have ended. Programs that these
+/// processes start do not inherit the lock. The lock also works between machines if their file system has locks (NFS;
+/// Lustre mounted with `flock`).
 class FileLock {
  public:
   FileLock() = default;
@@ -129,8 +131,8 @@ class FileLock {
   /// Releases the lock; in a forked child the file stays locked until the process that took the lock releases it.
   ~FileLock();
 
-  /// Throws Error if another process may hold the lock now: in a forked child, or if the folder no longer has the
-  /// locked file under its name. The folder itself may have been moved.
+  /// Throws Error if another process may hold the lock now. This is so in a forked child, and if the folder no longer
+  /// contains the locked file under its name. A move of the folder itself is not an error.
   void check() const;
 
   /// Throws Error as check() does. Also throws if the path given to the constructor no longer leads to the locked file,

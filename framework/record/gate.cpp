@@ -144,7 +144,7 @@ Verdict judge_count(const Expectation& one, const std::vector<RunOutcome>& runs)
 constexpr std::array<std::pair<char, std::string_view>, 7> kEntities{
     {{'&', "&amp;"}, {'<', "&lt;"}, {'>', "&gt;"}, {'"', "&quot;"}, {'\t', "&#9;"}, {'\n', "&#10;"}, {'\r', "&#13;"}}};
 
-/// Returns text for the quotes of an XML attribute.
+/// Returns `text`, escaped for an XML attribute in double quotes.
 std::string xml_text(const std::string& text) {
   std::string out;
   for (std::string_view rest = text; !rest.empty();) {

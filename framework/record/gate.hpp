@@ -16,7 +16,7 @@ namespace palpate {
 struct RunOutcome {
   std::string name;     ///< "run 910071e8f4bb", "job 3: acquisition=weighted, seed=3"
   std::string label;    ///< "job 3"; "" if there is only one run
-  std::string failure;  ///< reason why it failed or never ran; "" if it is done
+  std::string failure;  ///< reason why the run failed or has not ended; "" if it is done
   std::optional<Row> summary;
   std::optional<std::string> seed = std::nullopt;  ///< seed of a job; the number of different seeds is reported
 };
@@ -29,8 +29,8 @@ struct Verdict {
 };
 
 /// Judges `runs` (at least one). An expectation of a field must hold in every run. In a statistic, a run that failed or
-/// has no finite value counts as the worst possible value. Over several seeds, the verdict contains the number of
-/// seeds. `failed_runs` is the number of runs that failed.
+/// has no finite value counts as the worst possible value. If the runs have different seeds, the verdict contains the
+/// number of seeds. `failed_runs` is the number of runs that failed.
 std::vector<Verdict> judge(const std::vector<Expectation>& expectations, const std::vector<RunOutcome>& runs);
 
 /// Returns a line such as "file:line:column: expected median(object_taps) >= 12, got 11".

@@ -26,7 +26,7 @@ constexpr std::size_t kMostNameBytes =
     1024;  ///< bytes of a joined name, which contains the names of all enclosing objects
 constexpr std::size_t kMostLines = 1'100'000;
 constexpr std::size_t kMostLineValues = 20'000'000;  ///< values of all lines of a file
-constexpr std::size_t kNameOfOneValue = 64;          ///< bytes; a value with a longer name counts more than once
+constexpr std::size_t kNameOfOneValue = 64;          ///< bytes; a value with a longer name counts as several values
 
 constexpr const char* kNoObject = "is not a JSON object";
 constexpr const char* kTooDeep = "is nested too deeply: at most 100 levels";
@@ -188,8 +188,8 @@ void append(std::string& out, const Scalar& value) {
   out += text.empty() ? "null" : text;
 }
 
-/// Appends the fields that begin with `prefix`, starting at index `field`, as a map. Afterwards `field` is the index
-/// after the last of them.
+/// Appends a map of the consecutive fields from index `field` on whose names begin with `prefix`. Sets `field` to the
+/// index after the last of these fields.
 void append(std::string& out, const Row& row, std::size_t& field, std::string_view prefix, const std::string& indent) {
   Next next(indent);
   out += "{";

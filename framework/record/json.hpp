@@ -22,7 +22,8 @@ namespace palpate {
 /// name.
 std::optional<Row> parse_json_row(const std::string& text, std::string* reason = nullptr);
 
-/// Returns the objects of a list; items that are not objects are left out.
+/// Returns the objects of a list; items that are not objects, or that exceed the limits of parse_json_row(), are left
+/// out.
 std::vector<Row> rows_of(const JsonList& list);
 std::vector<Row> rows_of(const Tree& list);
 

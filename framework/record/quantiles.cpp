@@ -10,7 +10,7 @@ namespace palpate {
 double mean_of(const std::vector<double>& values) {
   if (values.empty()) return 0.0;
   const auto [least, most] = std::minmax_element(values.begin(), values.end());
-  // The rounding errors of a sum could change this value.
+  // Do not sum equal values: rounding errors could change the value.
   if (*least == *most) return *least;
   // Add value/n instead of dividing the sum by n, because the sum could overflow.
   const auto n = static_cast<double>(values.size());

@@ -24,7 +24,7 @@
 // 5. timing k follows tap k;
 // 6. no line follows an end `done`, which contains the number of taps; only an attempt may follow any other end;
 // 7. only the last line may lack its line end; it is then ignored;
-// 8. a summary.json without an end means that the record was cut (RunStatus::cut).
+// 8. a summary.json without an `end` in the record means that the record was cut (RunStatus::cut).
 //
 // Lines of other kinds and unknown fields are ignored. The fields are listed in runs/README.md.
 #pragma once
@@ -108,7 +108,7 @@ class RecordReader {
   std::int64_t taps_ = 0;   ///< number of taps with a result
   bool announced_ = false;  ///< whether the next tap was announced
   LineKind last_ = LineKind::other;
-  std::optional<Ending::How> end_;  ///< end in the last line, if it is one
+  std::optional<Ending::How> end_;  ///< nullopt unless the last line is an `end`
 };
 
 /// Content of a record.
@@ -121,7 +121,7 @@ struct RunRecord {
   std::optional<Row> intent;      ///< announced tap without a result
   std::vector<TapTimes> timings;  ///< times of the taps; a kill may have lost some
   std::vector<Row> objects, notes;
-  std::optional<Ending> end;  ///< end in the last line, if it is one
+  std::optional<Ending> end;  ///< nullopt unless the last line is an `end`
 
   /// Returns the hash of the build that started the run; "" if it is not known.
   std::string build() const;
@@ -144,8 +144,8 @@ struct RecordEnd {
 /// Reads only the last complete line of a record. Throws Error if this line is damaged.
 RecordEnd read_record_end(const std::filesystem::path& directory);
 
-/// Returns the number of attempts in the last series without an `end` between them, without checking the lines. Throws
-/// Error if the file system fails.
+/// Returns the number of attempts in the last series of attempts that have no `end` between them. Does not check the
+/// lines. Throws Error if the file system fails.
 int attempts_in_row(const std::filesystem::path& directory);
 
 /// Returns the times of the taps as a table.

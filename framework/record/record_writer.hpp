@@ -28,8 +28,9 @@ class HeldRecord {
   /// does.
   const RunRecord& before();
 
-  /// Whether the record now has a manifest; whether its last line is now an `end`.
+  /// Whether the record now has a manifest.
   bool begun() const { return begun_; }
+  /// Whether the last line of the record is now an `end`.
   bool ended() const { return ended_; }
 
   /// Throws Error if the path of the directory no longer leads to the directory that was opened.
@@ -42,11 +43,12 @@ class HeldRecord {
   void add_manifest(const Tree& manifest, bool sync);
   /// Appends the line of this process's attempt, before all other lines except the manifest. `attempt` holds further
   /// fields besides number, time and taps. An incomplete last line, left by a kill or a full disk, is deleted first;
-  /// the field `cut` gives its bytes.
+  /// the field `cut` then contains its number of bytes.
   void add_attempt(const Row& attempt);
   /// Appends a line for the same attempt after the experiment is built. `models` lists the readers of each model.
   void add_setup(bool announces, const Tree& models, bool sync);
-  /// Appends the line of a tap that was made, or of an intent. With `sync` the line is on the disk on return.
+  /// Appends the line of a tap that was made, or of an intent, which announces a tap. With `sync` the line is on the
+  /// disk on return.
   void add_tap(const Row& tap, bool sync);
   /// Appends the times of the tap. This is a separate call, so that a disk with room for the tap alone still stores the
   /// tap.
@@ -58,7 +60,7 @@ class HeldRecord {
   /// return, the file system has accepted all lines of the record.
   void add_end(const Ending& ending, bool sync);
 
-  /// Syncs the name of the record to the disk.
+  /// Syncs the directory entries on the path of the record to the disk.
   void sync_name() const;
 
  private:

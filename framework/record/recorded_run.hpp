@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Reads a run from its directory: config, taps, summary, and the places where the values of its config were written.
+// Reads a run from its directory: config, taps, summary, and the source locations of the values in its config.
 #pragma once
 
 #include "experiment/tap_record.hpp"
@@ -26,12 +26,14 @@ RunIdentity read_identity(const std::filesystem::path& directory);
 /// Returns the unresolved config.yaml of a run directory. Throws Error if there is none, or if it has a later format.
 Tree read_run_config(const std::filesystem::path& directory);
 
-/// Returns, for the path of each value of a run's config, the place where the value was written when the run started.
-/// The places are comments of config.yaml. Returns nothing if config.yaml cannot be read.
+/// Returns the source location (such as FILE:LINE:COLUMN) of each value of a run's config, by the dotted path of the
+/// value. Comments in config.yaml contain these locations as of the start of the run. Returns an empty map if
+/// config.yaml cannot be read.
 std::map<std::string, std::string> recorded_origins(const std::filesystem::path& directory);
 
-/// Returns the group of this `kind` ("scene") that set the first of the values whose paths begin with `path`; "" if no
-/// such group set any of them. `origins` comes from recorded_origins().
+/// Returns the name of the group of this `kind` (such as "scene") that set values whose paths begin with `path`. If
+/// several groups did, the first value in the order of the paths decides. Returns "" if no group did. `origins` comes
+/// from recorded_origins().
 std::string recorded_group(const std::map<std::string, std::string>& origins, const std::string& path,
                            const std::string& kind);
 
@@ -43,7 +45,7 @@ struct RecordedRun {
   std::filesystem::path directory;
   ResolvedConfig config;
   std::vector<Row> rows;          ///< one per tap
-  std::vector<TapRecord> taps;    ///< the same taps, without state and errors
+  std::vector<TapRecord> taps;    ///< the same taps, without the models' states and the errors
   std::vector<TapTimes> timings;  ///< times of the taps; a kill may have lost some
   std::optional<Tree> manifest;   ///< nullopt before the start of the run
   std::optional<Row> summary;     ///< nullopt before the end of the run

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // An ordered list of named scalars: one line of a table or one JSON object. Names are dotted ("height_gp.jitter"): JSON
-// writes nested objects, CSV the dotted names.
+// files contain nested objects instead, and CSV files the dotted names.
 #pragma once
 
 #include <palpate/record_fields.hpp>
@@ -25,11 +25,11 @@ struct Row {
 
   /// Returns the value at `name`; null if there is none.
   const Scalar* find(std::string_view name) const;
-  /// Returns the value at `name`, tests index `near` first, and sets `near` to the index found. This is fast for a
-  /// series of rows with the same fields.
+  /// Returns the value at `name`; null if there is none. Tests the field at index `near` first, and sets `near` to the
+  /// index of the field that it finds. This is fast for a series of rows with the same fields.
   const Scalar* find(std::string_view name, std::size_t& near) const;
-  /// Returns the number at `name`; a truth value counts as 1 or 0. Returns nullopt for a missing field, null, a text or
-  /// a number that is not finite, which all files contain as null.
+  /// Returns the number at `name`; a truth value counts as 1 or 0. Returns nullopt for a missing field, null, a text,
+  /// or a number that is not finite. JSON files contain such a number as null, CSV files as an empty cell.
   std::optional<double> number(std::string_view name) const;
   /// Returns the truth value at `name`; nullopt if there is none.
   std::optional<bool> flag(std::string_view name) const;
@@ -45,13 +45,14 @@ struct Row {
 void append_number(std::string& out, double value);
 
 /// Returns a scalar as the text of a CSV cell. Numbers have the fewest digits that read back as the same bits; null and
-/// numbers that are not finite become empty. Texts are quoted like csv_text().
+/// numbers that are not finite become empty. Texts are quoted as by csv_text().
 std::string csv_cell(const Scalar& value);
 
 /// Returns the text, in quotes if it contains commas, quotes or line ends.
 std::string csv_text(const std::string& text);
 
-/// Returns the names of all fields of all rows; each name comes after the name that precedes it in its row.
+/// Returns the names of all fields of all rows, each once. A name that earlier rows lack is inserted after the name
+/// that precedes it in its row.
 std::vector<std::string> names_of(const std::vector<Row>& rows);
 
 /// Returns a table of rows, which may have different fields; the header is names_of(rows). A text that a spreadsheet

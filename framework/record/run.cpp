@@ -222,7 +222,8 @@ class Run::Recorder final : public Observer {
     for (Observer* const one : observers_) one->announce(tap);
   }
 
-  /// Returns what displays show, by the models of the run; where these lack one and the truth is known, by a copy.
+  /// Returns the errors that displays show. If a model that they need is missing in the run and the truth is known, a
+  /// copy of the run with all needed models computes them.
   BeliefErrors errors_for_displays() {
     if (const auto own = experiment_.belief().errors(ErrorsFor::display)) return *own;
     if (!experiment_.backend().scene_is_truth()) return {};
@@ -241,7 +242,7 @@ class Run::Recorder final : public Observer {
   RunDirectory& directory_;
   Experiment& experiment_;
   std::vector<Observer*> observers_;
-  BeliefErrors shown_;  ///< of the state that the current tap was chosen from
+  BeliefErrors shown_;  ///< errors before the current tap
 };
 
 Run::Run(const Stopwatch& watch, const RunEnvironment& environment, const ResolvedConfig& config,
@@ -416,8 +417,8 @@ const RunReport& Run::finish() {
   return *report_;
 }
 
-/// Writes the end of the run. If `failure`, the reason why the run failed, is not "", it is thrown after all is
-/// written.
+/// Writes the end of the run. `failure` is the reason why the run failed, or "". A failure is thrown as an Error after
+/// everything is written.
 void Run::end(std::string failure) {
   tap_.reset();
   RunReport& report = report_.emplace();  // a failed run is finished, too

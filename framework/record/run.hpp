@@ -30,7 +30,7 @@ struct RunEnvironment {
   const std::atomic<bool>* interrupted;  ///< true after the user asked to stop; may be null
 };
 
-/// The backend of a run whose taps are made by a calling program.
+/// The name of the backend of runs whose taps are made by a calling program.
 inline constexpr const char* kCaller = "caller";
 /// The maker of the taps of a run: its backend, or the calling program.
 enum class Taps { by_backend, by_caller };
@@ -45,9 +45,9 @@ struct RestoredFiles {
 struct RunReport {
   std::filesystem::path directory;
   bool already_done = false;  ///< nothing was run: the directory held the finished run
-  bool interrupted = false;   ///< it can be resumed; there is no summary
+  bool interrupted = false;   ///< the run can be resumed, and has no summary
   Row summary;                ///< the fields of summary.json
-  RestoredFiles restored{};   ///< of a finished run
+  RestoredFiles restored{};   ///< only if the run had already finished
 };
 
 struct StartOptions {
@@ -79,7 +79,7 @@ class Run {
   /// it is.
   static std::unique_ptr<Run> resume(const RunEnvironment& environment, const std::filesystem::path& directory,
                                      const ResumeOptions& options, std::vector<Observer*> observers = {});
-  /// Resumes a run in a directory that this process holds; `config` is the config of that run.
+  /// Resumes the run in a directory that this process has locked; `config` is the config of that run.
   static std::unique_ptr<Run> resume(const RunEnvironment& environment, const ResolvedConfig& config,
                                      std::shared_ptr<RunDirectory> held, const ResumeOptions& options,
                                      std::vector<Observer*> observers = {});
@@ -92,9 +92,9 @@ class Run {
   /// kind `run` is thrown.
   const RunReport& run();
 
-  /// Returns the tap that the caller must make; the record announces it. Until tell() is called, the same tap is
-  /// returned. `scores`, if not null, replace the scores of the strategy: one finite number per candidate. Returns null
-  /// when the run is finished.
+  /// Returns the tap that the caller must make, and announces it in the record. Until tell() is called, further calls
+  /// return the same tap. `scores`, if not null, replace the scores of the strategy: one finite number per candidate.
+  /// Returns null when the run is finished.
   const TapRecord* ask(const Eigen::VectorXd* scores);
   /// Records the result of the pending tap. Throws Error of kind `usage`, and records nothing, for a value that no arm
   /// can have measured (see answers/tap_result_checks.hpp; `hover` and `overrun` of the backend bound the heights). If
@@ -112,7 +112,7 @@ class Run {
   /// the record.
   Belief& look(const QuantitySet& quantities);
 
-  /// Do not call this for a run that was finished before.
+  /// Do not call this for a run that had already finished when it was started or resumed: it has no experiment.
   Experiment& experiment() { return *experiment_; }
   const ResolvedConfig& config() const { return config_; }
   const std::filesystem::path& directory() const { return directory_ ? directory_->path() : report_->directory; }
@@ -123,14 +123,14 @@ class Run {
   Run(const Stopwatch& watch, const RunEnvironment& environment, const ResolvedConfig& config,
       std::shared_ptr<RunDirectory> directory, std::unique_ptr<Experiment> experiment,
       std::vector<Observer*> observers);
-  /// For a run that was finished before.
+  /// Constructs a run that had already finished when it was started or resumed.
   Run(const ResolvedConfig& config, RunReport report);
   void end(std::string failure);
 
   const RunEnvironment* environment_ = nullptr;
   Stopwatch watch_;
   ResolvedConfig config_;
-  // Null for a run that was finished before.
+  // The next three are null if the run had already finished when it was started or resumed.
   std::shared_ptr<RunDirectory> directory_;
   std::unique_ptr<Experiment> experiment_;
   std::unique_ptr<Recorder> recorder_;
@@ -148,9 +148,9 @@ RunReport start_run(const RunEnvironment& environment, const ResolvedConfig& con
 RunReport resume_run(const RunEnvironment& environment, const std::filesystem::path& directory,
                      const ResumeOptions& options, const std::vector<Observer*>& observers = {});
 
-/// Returns the models of this config, each with its readers. Only the simulator is built, because other backends may
-/// connect to a device; the models that such backends read are left out. Throws Error if the experiment cannot be
-/// built.
+/// Returns the models of this config, each with its readers. Builds no backend except the simulator, because other
+/// backends may connect to a device. Models that only such a backend reads are left out. Throws Error if the experiment
+/// cannot be built.
 std::vector<PlannedModel> models_of(const RunEnvironment& environment, const ResolvedConfig& config);
 
 /// Returns <runs>/<slug>/<id>.
@@ -159,12 +159,12 @@ std::filesystem::path directory_of(const ResolvedConfig& config, const std::file
 /// Returns a backend for experiments that make no taps: its tap() throws.
 std::shared_ptr<Backend> no_backend(bool truth_known);
 
-/// Returns an Error if the run has taps of another build and so must not be resumed; else nullopt.
+/// Returns an Error if another build made taps of the run, so that this build must not resume it; else nullopt.
 std::optional<Error> objection_to_build(const RunEnvironment& environment, const ResolvedConfig& config,
                                         const RunRecord& record);
 
-/// Restores missing files of an ended run in a directory that this process holds. Files are missing after a kill
-/// between the last line and summary.json, or after a power failure before a sync. Throws Error.
+/// Restores missing files of an ended run in a directory that this process has locked. A kill after the last line of
+/// the record but before summary.json leaves files missing, and so does a power failure before a sync. Throws Error.
 RestoredFiles restore_files(const RunEnvironment& environment, RunDirectory& held);
 
 }  // namespace palpate

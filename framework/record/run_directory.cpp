@@ -30,11 +30,12 @@ RunStatus status_of(std::optional<Ending> end, bool begun) {
   return out;
 }
 
-/// Of a damaged one, that of a run which failed by it.
+/// Returns the end of a run from its record. A run with a damaged last line counts as failed, with the damage as its
+/// reason.
 RecordEnd end_of(const fs::path& directory) {
   RecordEnd out;
   if (const auto trouble = catch_error([&] { out = read_record_end(directory); })) {
-    if (trouble->kind() == Error::Kind::run) throw *trouble;  // a file system that fails tells nothing of the run
+    if (trouble->kind() == Error::Kind::run) throw *trouble;  // such an error does not show the state of the run
     out.begun = true;
     out.end.emplace();
     out.end->how = Ending::How::failed;
@@ -72,12 +73,12 @@ RunStatus read_standing(const fs::path& directory) {
   RunStatus now = read_ending(directory);
   if (now.state == RunStatus::State::done) return now;
   if (is_running(directory)) return {RunStatus::State::running, 0, ""};
-  // Who ended between the two questions has written meanwhile what the first one missed.
+  // A process that ended between the two checks has recorded its end after the first one, so read the record again.
   return read_ending(directory);
 }
 
 bool lacks_files(const fs::path& directory, const Ending& end) {
-  // A power cut leaves it empty: what it must hold would have to be written to be compared.
+  // A power cut may leave summary.json empty. Its size is not recorded, so no other damage of this file is detected.
   if (size_if_there((directory / kSummaryFile).c_str()).value_or(0) == 0) return true;
   return std::any_of(end.files.begin(), end.files.end(), [&](const Ending::File& one) {
     return size_if_there((directory / one.name).c_str()) != one.bytes;
@@ -100,7 +101,7 @@ RunStatus read_record(const fs::path& directory) {
 }
 
 RunStatus read_status(const fs::path& directory) {
-  // Asked first: who ends between the two questions has written what the second one reads.
+  // Check the lock first: if a process ends between the two checks, the record then already contains its end.
   const bool held = is_running(directory);
   RunStatus out = read_record(directory);
   if (held && out.state != RunStatus::State::done) out.state = RunStatus::State::running;
@@ -135,7 +136,7 @@ void RunDirectory::begin_attempt(const std::string& build, bool forced) {
 void RunDirectory::set_up(bool announce, const Tree& models) {
   announce_ = announce;
   record_.add_setup(announce, models, sync_);
-  // Lines that are on the disk are lost all the same if no name leads to them.
+  // Lines on the disk are lost if the directory entry of the record is not on the disk.
   if (sync_) record_.sync_name();
 }
 
@@ -184,7 +185,7 @@ void RunDirectory::end(Ending ending) {
 
 void RunDirectory::fail(const std::string& reason) {
   const std::string id = fs::absolute(path_).lexically_normal().filename().string();
-  // A damaged record says how it ended all the same: its last line does.
+  // A damaged record only gets the line `end`. This suffices, because readers take the end of a run from the last line.
   const bool damaged = catch_error([&] { before(); }).has_value();
   if (!damaged && !record_.begun()) {
     begin(Tree::map({{"id", Tree::quote(id)}, {"at", Tree::quote(now_text())}, {"version", Tree::quote(kVersion)}}));

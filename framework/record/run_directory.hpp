@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The directory of one run: its record, the files that are made from it, and what state it is in. runs/README.md
+// The directory of one run: the record, the files made from the record, and the state of the run. runs/README.md
 // describes every file.
 #pragma once
 
@@ -16,120 +16,127 @@
 
 namespace palpate {
 
-/// Whether `directory` is that of a sweep, and so of many runs.
+/// Returns whether `directory` is the directory of a sweep, which contains many runs.
 bool is_sweep(const std::filesystem::path& directory);
 
-/// How far a run came, read from its record alone.
+/// State and progress of a run.
 struct RunStatus {
   enum class State {
-    absent,      ///< no such directory, or one without a record
-    running,     ///< a living process holds the lock
-    unfinished,  ///< killed or interrupted
+    absent,      ///< there is no such directory, or it has no record
+    running,     ///< a process holds the lock
+    unfinished,  ///< killed or interrupted; can be resumed
     done,
     failed,
   };
   State state = State::absent;
-  int taps = 0;             ///< recorded
-  std::string stop_reason;  ///< of a finished run: why it stopped or failed
-  /// The last RMSE that is known to have been expected, metres: of a run that ended well that of its summary, of others
-  /// that before the last tap, where `palpate run` showed it.
+  int taps = 0;             ///< number of recorded taps
+  std::string stop_reason;  ///< reason why a finished run stopped or failed
+  /// Last recorded value of the expected RMSE, metres. For a finished run this is the value in its summary. For other
+  /// runs it is the value before the last tap, which is recorded only if `palpate run` or `resume` showed it.
   std::optional<double> expected_rmse = std::nullopt;
-  bool cut = false;  ///< there is a summary.json, and the record does not say that the run has ended
-  std::optional<Ending> end = std::nullopt;  ///< of a finished run
+  bool cut = false;  ///< summary.json exists, but the record does not contain the end of a finished run
+  std::optional<Ending> end = std::nullopt;  ///< end of a finished run
 };
 
-/// The summary of a run that has ended, as the last line of its record has it; none of another. Throws Error for a
-/// damaged line.
+/// Returns the summary in the last line of a run's record; nullopt unless the run is done or has failed. Throws Error
+/// if this line is damaged.
 std::optional<Row> read_summary(const std::filesystem::path& directory);
 
-/// The same for who looks at many: a damaged one is that of a failed run, with the damage for its reason. Throws Error
-/// where the file system fails.
+/// Returns the summary like read_summary(), for callers that read many runs. A run with a damaged last line counts as
+/// failed, with the damage as its reason. Throws Error only if the file system fails.
 std::optional<Row> read_outcome(const std::filesystem::path& directory);
 
-/// State and reason of a run directory, as the last line of its record tells them: the taps are not counted, and it is
-/// not asked who holds it. Of a damaged line, as read_outcome().
+/// Returns the state and the reason in the last line of a run's record. Does not count the taps and does not check the
+/// lock. Treats a damaged last line as read_outcome() does.
 RunStatus read_ending(const std::filesystem::path& directory);
 
-/// The same, and of one that is not done whether a living process holds it.
+/// Returns the same as read_ending(), but the state `running` if the run is not done and a process holds the lock.
 RunStatus read_standing(const std::filesystem::path& directory);
 
-/// Whether a file that was made from the record of an ended run is gone, or has not as many bytes as it had: a kill or
-/// a power cut came between.
+/// Returns whether a file that was made from the record of an ended run is missing or has another size than in `end`,
+/// as after a kill or a power cut. Also returns true if summary.json is missing or empty.
 bool lacks_files(const std::filesystem::path& directory, const Ending& end);
 
-/// Whether a living process holds it.
+/// Returns whether a process holds the lock of the run.
 bool is_running(const std::filesystem::path& directory);
 
-/// Reads the state of a run directory; nobody seems to hold it, because it is not asked who does. For who holds the
-/// lock. Throws Error for a damaged one.
+/// Reads the whole record and returns the state of the run. Does not check the lock and never returns `running`, so
+/// that the process that holds the lock can call it. Throws Error for a damaged record.
 RunStatus read_record(const std::filesystem::path& directory);
 
-/// The same, and whether it is running. Throws Error for a damaged one.
+/// Returns the same as read_record(), but the state `running` if the run is not done and a process holds the lock.
+/// Throws Error for a damaged record.
 RunStatus read_status(const std::filesystem::path& directory);
 
 const char* state_name(RunStatus::State state);
 
-/// A run directory held by this process. Keeps the lock for its lifetime.
+/// A run directory that this process has locked. The object holds the lock for its lifetime.
 class RunDirectory final {
  public:
-  /// Makes the directory if need be and locks it. Throws Error of kind `busy` if another process holds it.
+  /// Makes the directory if it does not exist, locks it, and removes temporary files of killed processes. Throws Error
+  /// of kind `busy` if another process holds the lock.
   explicit RunDirectory(const std::filesystem::path& directory);
 
   const std::filesystem::path& path() const { return path_; }
 
-  /// What earlier processes have recorded. Throws Error for a damaged record.
+  /// Returns the record that earlier processes wrote. Throws Error for a damaged record.
   const RunRecord& before() { return record_.before(); }
 
-  /// From here on all that is written is forced to disk. Throws Error.
+  /// Makes later writes sync to the disk before they return. Lines `attempt` and `timing` are synced only with the next
+  /// line.
   void sync() { sync_ = true; }
 
-  /// Takes everything out of the record of a run that failed before it could begin.
+  /// Removes all lines of the record. For a run that failed before it could begin.
   void clear() { record_.clear(); }
 
-  /// The config, before the record begins: on the disk on return, since a record without one cannot be carried on.
+  /// Writes config.yaml. Call this before begin(). The file is on the disk on return, because a run without a config
+  /// cannot be resumed.
   void write_config(const std::string& text) const;
 
-  /// The beginning of a record. `manifest` holds what there is to know beside its version.
+  /// Writes the first line of the record: the version of the format and the entries of `manifest`.
   void begin(const Tree& manifest);
 
-  /// An attempt of this process, before it builds anything; `build` is its own.
+  /// Records an attempt of this process, before it builds the experiment. `build` is the hash of this process's build;
+  /// `forced` is whether the user gave --force.
   void begin_attempt(const std::string& build, bool forced);
 
-  /// The same once it is built. With `announce` each tap is announced before it is made.
+  /// Records that the experiment of this attempt is built. `models` lists the readers of each model. With `announce`,
+  /// each tap is announced in the record before it is made.
   void set_up(bool announce, const Tree& models);
 
-  /// The taps that are recorded. One that was announced, and of which nobody saw the end, becomes a tap of outcome
-  /// `unknown`. Throws Error for a tap that is none.
+  /// Returns the recorded taps. An announced tap without a result is recorded with the outcome `unknown` and returned,
+  /// too. Throws Error for a damaged tap.
   std::vector<TapRecord> recover();
 
-  /// Throws Error where the directory is no longer the one that was opened: nothing more can be recorded.
+  /// Throws Error if the path no longer leads to the directory that was opened, because nothing more can then be
+  /// recorded.
   void check_in_place() const { record_.check_in_place(); }
 
   void announce(const TapRecord& tap);
   void record(const TapRecord& tap, const std::array<double, kPhases>& seconds);
 
-  /// What the taps have shown of the robot.
+  /// Records a property of the robot that the taps have determined: see Backend::learnt().
   void note_learnt(const std::string& name, const std::string& value);
   void write_objects(const std::vector<Row>& objects) { record_.add_objects(objects, sync_); }
 
-  /// The rows of all taps, recovered ones included.
+  /// Returns the rows of all taps, including those returned by recover().
   const std::vector<Row>& rows() const { return rows_; }
 
-  /// Seconds by phase of all taps, those of earlier processes included.
+  /// Returns the seconds per phase, summed over all taps, including those of earlier processes.
   std::array<double, kPhases> total_seconds() const { return total_; }
 
   void write(const std::string& name, const std::string& text) const {
     record_.check_in_place();
     write_file(path_ / name, text, sync_);
   }
-  /// A file that is made from the record: end() records how many bytes it has and their hash.
+  /// Writes a file that is made from the record. end() records its size in bytes and its hash.
   void write_made(const std::string& name, const std::string& text);
 
-  /// Records how the run, or this attempt, ended, with its summary unless it was interrupted, and the files of
-  /// write_made(); then writes the summary into summary.json.
+  /// Records the end of the run or of this attempt, with its summary and the files of write_made(). Then writes the
+  /// summary into summary.json. An interrupted run has no summary.
   void end(Ending ending);
 
-  /// Ends a run that failed before it could begin, or whose process died, and whose record may be damaged.
+  /// Records the failure of a run that failed before it could begin, or whose process died. The record may be damaged.
   void fail(const std::string& reason);
 
  private:

@@ -47,7 +47,7 @@ class RecordedBackend final : public Backend {
     return out;
   }
 
-  /// Returns the quantities whose models appear in the first row: those were read before the first tap.
+  /// Returns the quantities whose models appear in the first row. The run read them before its first tap.
   QuantitySet reads() const override {
     QuantitySet out;
     if (has("height_gp.signal")) out.insert(quantity::kUncertainty);

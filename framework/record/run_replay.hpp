@@ -20,8 +20,8 @@ namespace palpate {
 class RecordedBackend;
 
 /// Passes the recorded taps of a run to new models, one after the other. It writes nothing, moves nothing and builds no
-/// backend; each recorded tap lists the drawn lines that the backend rejected. If a program scored the candidates, the
-/// record provides the choices, and no tap is chosen after the last one.
+/// backend. The record lists, for each tap, which of the drawn lines the backend rejected. If an external program
+/// scored the candidates, the choices come from the record, and no tap is chosen after the last recorded tap.
 class RunReplay {
  public:
   /// Starts before the first tap. `environment` and `run` must outlive the replay. `readers` are additional readers of
@@ -32,7 +32,8 @@ class RunReplay {
   RunReplay(const RunEnvironment& environment, const RecordedRun& run, const ReadPlan& readers = {{}, std::nullopt});
   ~RunReplay();
 
-  /// Returns why the truth that the run knew is no longer known; nullopt if it is known, or if the run did not know it.
+  /// Returns the reason why the truth, which was known during the run, is no longer known. Returns nullopt if the truth
+  /// is still known, or was not known during the run.
   const std::optional<Error>& truth_lost() const { return truth_lost_; }
 
   /// Processes recorded taps until `taps` of them are processed, from 0 to all. A smaller number than before has no
@@ -40,7 +41,8 @@ class RunReplay {
   void advance_to(int taps);
   int taps() const { return taps_; }
 
-  /// Returns the tap that the strategy would choose next; if a program scored the candidates, the recorded tap.
+  /// Returns the tap that the strategy would choose next, or nullopt if it would choose none. If a program scored the
+  /// candidates, returns the recorded tap instead.
   std::optional<TapRecord> next();
 
   /// Runs the next recorded tap as the loop does: chooses it, uses the recorded result, and calls `observer`. Returns

@@ -29,7 +29,7 @@ std::string grid_csv(const Candidates& candidates, const std::vector<Column>& co
   std::string out = "x,y";
   for (const Column& column : columns) out.append(",").append(column.first);
   out += '\n';
-  // Formatting numbers again would take half of the time of a short run. So texts are reused for the axes, for columns
+  // Formatting every number would take half of the time of a short run, so texts are reused: for the axes, for columns
   // with the same map, and for cells with the same value as the previous cell.
   const auto text_of = [](double value) {
     std::string text;

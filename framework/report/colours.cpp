@@ -15,8 +15,9 @@ const std::vector<std::string>& palette_stops(Palette palette) {
 }
 
 Colours deviation_colours(double least, double most) {
-  constexpr double kFloor = 1e-6;  // metres: a micrometre is below any measurement
-  // least ratio of `most` to `least` for a logarithmic scale; a linear scale would hide the lower half of the values
+  constexpr double kFloor = 1e-6;  // metres; a micrometre is below the resolution of any measurement
+  // smallest ratio of `most` to `least` for a logarithmic scale; with a larger ratio, a linear scale would hide
+  // differences between low values
   constexpr double kWorthRatios = 5.0;
   least = std::max(least, kFloor);
   most = std::max(most, kFloor);

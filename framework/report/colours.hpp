@@ -8,16 +8,16 @@
 
 namespace palpate {
 
-/// Colours of curves: those of Okabe and Ito (2008, Color universal design), which remain distinct with every kind of
-/// colour vision, and a brown.
+/// Colours of curves: the palette of Okabe and Ito (2008, Color universal design), which remains distinct with every
+/// kind of colour vision, and a brown.
 inline constexpr std::array<const char*, 8> kLineColours{"#0072b2", "#d55e00", "#009e73", "#cc79a7",
                                                          "#56b4e9", "#e69f00", "#000000", "#8c6d46"};
 /// The colours of curves for a dark background.
 inline constexpr std::array<const char*, 8> kLineColoursOnDark{"#56b4e9", "#e69f00", "#009e73", "#cc79a7",
                                                                "#f0e442", "#d55e00", "#ffffff", "#c9a66b"};
 
-/// Colour scales of maps. Lightness grows evenly along each scale. Equal differences therefore look equal, also in grey
-/// and to people with a colour vision deficiency.
+/// Colour scales of maps. Lightness grows evenly along each scale. Equal differences therefore look equal, even in grey
+/// prints and to people with a colour vision deficiency.
 enum class Palette {
   viridis,  ///< from dark blue through green to yellow, for values that show where to tap
   cividis,  ///< from dark blue through grey to yellow, for uncertainties

@@ -22,8 +22,9 @@ struct Plane {
 };
 
 /// Returns the position of the surface between two neighbouring nodes of a grid line, as a share of their distance
-/// `side`. The first node is `from` metres along the line. Returns 0.5 if no interval begins or ends between the nodes:
-/// at a tangent, the intervals of a row and of a column may differ.
+/// `side`. The first node is `from` metres along the line. Returns 0.5 if no interval begins or ends between the nodes.
+/// This can happen where a grid line is tangent to the surface, because the intervals along rows and along columns may
+/// then disagree.
 double share_between(const std::vector<Stretch>& intervals, double from, double side) {
   for (const Stretch& one : intervals) {
     for (const double end : {one.begin, one.end}) {

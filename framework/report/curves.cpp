@@ -25,7 +25,7 @@ Curve curve_of(const History& history, const std::string& name, const Get& get) 
   return curve;
 }
 
-/// Returns a curve for each number that `numbers` finds in the state of the last moment.
+/// Returns one curve per number that `numbers` returns for the state at the last moment.
 template <class Numbers>
 std::vector<Curve> named_curves(const History& history, const Numbers& numbers) {
   const auto row_at = [&](const RunAtTap& moment) { return numbers(Row{moment.result.state.fields}); };
@@ -66,7 +66,8 @@ Row footprint_numbers(const Row& state) {
   return out;
 }
 
-/// Returns the milliseconds of each tap by phase. A tap during which the program was killed has no values.
+/// Returns one curve per phase of a tap: the time that the phase took, milliseconds. A tap during which the program was
+/// killed has no values.
 std::vector<Curve> times(const RecordedRun& recording, const History& history) {
   std::vector<Curve> out;
   for (const char* phase : kPhaseNames)
@@ -101,8 +102,8 @@ void fit_axis(CurvePanel& panel) {
   panel.curves.erase(std::remove_if(panel.curves.begin(), panel.curves.end(), empty), panel.curves.end());
 }
 
-/// Returns the constant value of a curve; nullopt if the curve visibly changes. On an axis from 0 and on a logarithmic
-/// axis, changes of less than a thousandth of the largest value are invisible. On a free axis, any change is visible.
+/// Returns the constant value of a curve; nullopt if the curve visibly changes. On a free axis, any change is visible.
+/// On other axes, changes of at most a thousandth of the largest absolute value are invisible.
 std::optional<double> constant_value(const Curve& curve, CurveAxis axis) {
   double least = std::numeric_limits<double>::infinity();
   double most = -least;

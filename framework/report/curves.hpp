@@ -10,7 +10,8 @@
 
 namespace palpate {
 
-/// A curve with one value per moment of a history; nullopt where the run has no value.
+/// A curve with one value per moment of a history (before the first tap and after each tap); nullopt where the run has
+/// no value.
 struct Curve {
   std::string name;  ///< "" for the only curve of a panel
   std::vector<std::optional<double>> values;
@@ -42,7 +43,7 @@ struct Curves {
 };
 
 /// Returns panels of errors, standard deviations, shares, likelihoods, hyperparameters, numbers of the footprint and
-/// times. Quantities that the run does not have are left out. Panels without any change become constants.
+/// times. Quantities that the run does not have are left out. Panels whose curves do not change become constants.
 Curves curves_of(const RecordedRun& recording, const History& history);
 
 }  // namespace palpate

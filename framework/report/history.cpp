@@ -26,7 +26,7 @@ TapMark mark_of(const RecordedRun& recording, std::size_t index, double desk, co
   return mark;
 }
 
-/// Returns whether the scores differ from all other maps of the page.
+/// Returns whether the scores differ from all other maps on the page.
 bool own_scores(const MapsAtTap& now) {
   if (!now.has_scores || now.scores == now.uncertainty) return false;
   return now.has_weight() ? now.scores != now.exploration() : now.scores != now.probability;
@@ -49,7 +49,7 @@ void set_common(RunAtTap& out, RunReplay& playback, const RecordedRun& recording
   }
 }
 
-/// Returns the maps after the taps that `playback` has replayed; these are the first taps of `recording`.
+/// Returns the maps after the taps that `playback` has replayed, which are the first taps of `recording`.
 MapsAtTap maps_of(RunReplay& playback, const RecordedRun& recording) {
   Experiment& experiment = playback.experiment();
   Belief& belief = experiment.belief();
@@ -77,10 +77,10 @@ MapsAtTap maps_of(RunReplay& playback, const RecordedRun& recording) {
   return out;
 }
 
-/// Returns contours of the true scene in its present state; empty if the truth is unknown.
+/// Returns contours of the true scene in its current state; empty if the truth is unknown.
 std::vector<Ring> true_contours(Experiment& experiment) {
   constexpr double kApart = 0.01;
-  constexpr double kOfGrid = 0.002;  // metres; complete contours for walls of 3 mm
+  constexpr double kOfGrid = 0.002;  // metres; fine enough for complete contours of walls 3 mm thick
   const Scene* const truth = experiment.truth();
   return truth != nullptr ? contours(*truth, kApart, kOfGrid) : std::vector<Ring>{};
 }
@@ -131,7 +131,7 @@ void HistoryBuilder::add() { any_side_ ? add_surface() : add_maps(); }
 
 void HistoryBuilder::add_surface() {
   Experiment& experiment = playback_.experiment();
-  constexpr double kResolution = 0.0025;  // metres; complete surfaces for walls of 3 mm
+  constexpr double kResolution = 0.0025;  // metres; fine enough for complete surfaces of walls 3 mm thick
   RunAtTap now;
   set_common(now, playback_, recording_);
   history_.surfaces.push_back(experiment.belief().surface(kResolution));
@@ -141,7 +141,8 @@ void HistoryBuilder::add_surface() {
     history_.true_contours = true_contours(experiment);
   history_.shown.push_back(now.taps);
   history_.moments.push_back(now);
-  // Largest number of stored values. A page cannot hold more, and without a limit a thousand taps would need gigabytes.
+  // Largest number of stored values. A page with more values would be too large, and without a limit a thousand taps
+  // would need gigabytes.
   constexpr std::size_t kMost = 10'000'000;
   thin(kMost);
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// History of a run: belief, errors and next choice after each of its taps. The history is computed from the recorded
-// taps alone, so a run need not store its maps.
+// History of a run: belief, errors and next tap after each tap. The history is computed from the recorded taps alone,
+// so a run need not store its maps.
 #pragma once
 
 #include "record/run_replay.hpp"
@@ -17,11 +17,11 @@
 
 namespace palpate {
 
-/// A tap as the figures mark it.
+/// The mark of a tap in figures.
 struct TapMark {
   enum class Kind { on, off, failed };
   int tap = 1;
-  Kind kind = Kind::failed;  ///< follows from the label that the contact has at that moment
+  Kind kind = Kind::failed;  ///< determined by the label of the contact at the moment shown
   double x = 0.0;            ///< position of the tap (x, y), metres
   double y = 0.0;
   double height = 0.0;  ///< metres; the height of the desk for a tap without a contact
@@ -30,31 +30,35 @@ struct TapMark {
 /// State of a run after its first `taps` taps.
 struct RunAtTap {
   int taps = 0;
-  RunResult result;                  ///< the result that the run would have if it ended here
-  std::optional<TapRecord> next;     ///< the next tap; nullopt if no candidate is left, or if its choice is unknown
-  bool is_next_known = true;         ///< false if a program chooses: reports do not start programs
-  std::optional<double> next_along;  ///< from any side: path length of the next tap by the most probable particle
+  RunResult result;               ///< the result that the run would have if it ended here
+  std::optional<TapRecord> next;  ///< the next tap; nullopt if no candidate is left, or if its choice is unknown
+  /// false if an external program scores the candidates, because reports do not start programs
+  bool is_next_known = true;
+  /// from any side: path length of the next tap, predicted by the most probable particle, metres
+  std::optional<double> next_along;
   std::vector<TapReading> suspected_outliers;  ///< contacts that may be outliers
-  /// Greatest standard deviation of the candidates' heights given all taps, or of a surface from any side; metres.
+  /// Greatest standard deviation, metres: of the heights at the candidates given all taps, or from any side of the
+  /// surface.
   double largest_deviation = 0.0;
-  /// Range of the label GP's mean over the candidates; nullopt if the footprint is not the weight.
+  /// Range of the label GP's mean w over the candidates; nullopt if the footprint is not the label GP.
   std::optional<double> least_weight, most_weight;
 };
 
 /// State of a run after its first `taps` taps, with the maps of the belief: one value per candidate.
 struct MapsAtTap : RunAtTap {
-  std::vector<TapMark> marks;   ///< these taps in their order
+  std::vector<TapMark> marks;   ///< marks of the first `taps` taps, in their order
   Eigen::VectorXd surface;      ///< reconstructed heights, metres
   Eigen::VectorXd deviation;    ///< standard deviation of the height, metres
   Eigen::VectorXd uncertainty;  ///< u
-  /// If the footprint is the weight, `weight` is w as the strategy reads it, and `probability` is empty. Otherwise
-  /// `probability` is the footprint's p, and `weight` is empty.
+  /// If the footprint is the label GP, `weight` is its mean w as the strategy uses it, and `probability` is empty.
+  /// Otherwise `probability` is the footprint's p, and `weight` is empty.
   Eigen::VectorXd weight;
   Eigen::VectorXd probability;
-  bool has_scores = true;  ///< whether the strategy gives scores
-  Eigen::VectorXd scores;  ///< scores of the candidates; 0 without scores
+  bool has_scores = true;  ///< whether the scores are known: reports do not start acquisition programs
+  Eigen::VectorXd scores;  ///< scores of the candidates; all 0 if the scores are unknown
   bool has_weight() const { return weight.size() > 0; }
-  Eigen::VectorXd exploration() const { return uncertainty.cwiseProduct(weight); }  ///< e, defined if there is a w
+  /// e = u w, only valid if has_weight()
+  Eigen::VectorXd exploration() const { return uncertainty.cwiseProduct(weight); }
 };
 
 /// Returns the quantities that a page reads, all from the first tap on.
@@ -77,13 +81,13 @@ struct History {
   std::vector<RunAtTap> moments;  ///< before the first tap and after each tap
   std::vector<int> shown;         ///< indices of the moments with maps, ascending
   /// Maps with one frame per shown moment, in this order. "height" is the reconstruction, metres. "deviation" is the
-  /// standard deviation of the height, metres. It is limited to the largest value of the height GP at any moment,
-  /// because the value of the surface GP is meaningless before the first contact with an object. Then follow "u", and
-  /// "w", or "p" if the footprint is not the weight. "score" follows if the scores equal neither these maps nor u w.
-  /// The last map is "truth" in metres, with a single frame, if the truth is known.
+  /// standard deviation of the height, metres. It is limited to the largest standard deviation of the height GP at any
+  /// moment, because the standard deviation of the surface GP is meaningless before the first contact with an object.
+  /// Then follow "u", and "w" if the footprint is the label GP, else "p". "score" follows if the scores equal neither
+  /// these maps nor e = u w. The last map is "truth" in metres, with a single frame, if the truth is known.
   std::vector<MapSeries> maps;
   Eigen::VectorXd x, y;  ///< coordinates of the maps' columns and rows, metres; maps are stored row by row
-  /// Surfaces of a run from any side, one per shown moment, instead of maps. A surface is empty before the first
+  /// For a run from any side: surfaces instead of maps, one per shown moment. A surface is empty before the first
   /// contact with an object. `true_contours` are the contours of the true surface at the last moment; they are empty if
   /// the truth is unknown.
   std::vector<Surface> surfaces;
@@ -96,7 +100,8 @@ struct History {
 /// Callback with the number of finished taps and the number of all taps.
 using OnProgress = std::function<void(int done, int all)>;
 
-/// Largest number of columns or rows of a map. Of a larger grid, maps show every second, third, ... row and column.
+/// Largest number of columns or rows of a map. If a grid is larger, maps show only every second, third, ... row and
+/// column.
 inline constexpr int kMostCellsAcross = 128;
 
 /// Builds a history tap by tap. Other code can read the history so far while the run goes on.
@@ -111,8 +116,8 @@ class HistoryBuilder {
   bool has_own_scores() const { return own_scores_; }
   /// Adds the next recorded tap, which must exist.
   void advance();
-  /// Removes maps and surfaces of every second moment if they hold more than `most` numbers. The last moment always
-  /// keeps them.
+  /// If maps and surfaces contain more than `most` numbers, removes the maps and surfaces of every second moment. The
+  /// last moment always keeps its maps or surface.
   void thin(std::size_t most);
 
   /// Returns the history so far. Only moments from `moment` on have maps.
@@ -129,9 +134,9 @@ class HistoryBuilder {
   bool any_side_;
   int stride_ = 1;  ///< maps show every stride_-th column and row
   bool own_scores_ = false;
-  std::optional<Eigen::VectorXf> truth_;  ///< after the taps so far; pushed objects change it
+  std::optional<Eigen::VectorXf> truth_;  ///< true heights after the taps so far; they change if a tap pushes an object
   double largest_ = 0.0;                  ///< greatest standard deviation of the height GP at any moment
-  History history_;                       ///< with unlimited deviations; since() limits them
+  History history_;                       ///< standard deviations are not limited to `largest_` yet; since() does this
 };
 
 /// Builds the history of a whole recorded run. Throws the errors of RunReplay.

@@ -14,8 +14,9 @@
 namespace palpate {
 namespace {
 
-/// Returns the descent of the heights along one axis by central differences, one-sided at the edges. `at` is the
-/// position along the axis among `count`. Neighbours are `step` indices apart.
+/// Returns the negative slope of the heights along one axis, by central differences, or one-sided differences at the
+/// edges. `at`: index along the axis, less than `count`. Neighbours along the axis are `step` indices apart in
+/// `heights`.
 double descent(const Eigen::VectorXd& heights, const Eigen::VectorXd& places, int index, int at, int count, int step) {
   const int before = std::max(at - 1, 0);
   const int behind = std::min(at + 1, count - 1);

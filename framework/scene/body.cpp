@@ -31,7 +31,7 @@ double Body::height(double x, double y) const {
   const double s = cosine_ * (x - x_) + sine_ * (y - y_);
   const double t = cosine_ * (y - y_) - sine_ * (x - x_);
   if (upright_) return std::max(0.0, shape_->top(s, t));
-  // A vertical line downwards through (s, t), from the height of the desk.
+  // The line straight down that starts at (s, t) at the height of the desk, in the frame of the shape.
   const Line line{untilted(s, t, -lift_), untilted(0.0, 0.0, -1.0)};
   return std::max(0.0, -shape_->first_intersection(line));
 }

@@ -13,11 +13,11 @@ namespace palpate {
 /// Coordinates are relative to the desk: x and y in the frame of the area, z above the desk, metres.
 class Body {
  public:
-  /// The shape is tilted by `tilt` (radians) and set down, so that its lowest point touches the desk. Its position is
-  /// the origin, its rotation 0.
+  /// Tilts the shape by `tilt` (radians) and sets it down, so that its lowest point touches the desk. The body is at
+  /// the origin, with the rotation 0.
   Body(std::shared_ptr<const Shape> shape, double tilt);
 
-  /// Rotates the body about the vertical axis, and moves the origin of its frame to (x, y).
+  /// Rotates the body by `rotation` (radians) about the vertical axis, and moves the origin of its frame to (x, y).
   void place(double x, double y, double rotation);
 
   /// Returns the height above the desk at (x, y); 0 outside of the body. Points on the outline count as inside.
@@ -27,13 +27,14 @@ class Body {
   /// none.
   double first_intersection(const Line& line) const;
 
-  /// Returns the intervals of a line inside the body, in their order.
+  /// Returns the intervals of a line inside the body, in ascending order.
   std::vector<Stretch> intervals(const Line& line) const;
 
   /// Returns the height of the highest point above the desk.
   double highest() const;
 
-  /// Returns how far the body extends from its position in a horizontal direction, a unit vector.
+  /// Returns how far the body extends from its position in a horizontal direction, metres. The direction is a unit
+  /// vector.
   double reach(double direction_x, double direction_y) const;
 
   double x() const { return x_; }
@@ -41,9 +42,9 @@ class Body {
   double rotation() const { return math::atan2(sine_, cosine_); }
 
  private:
-  /// Returns a line in the frame of the shape.
+  /// Transforms a line into the frame of the shape.
   Line own(const Line& line) const;
-  /// Returns a vector of the untilted frame in the frame of the shape.
+  /// Transforms a vector from the body's frame, whose z axis is vertical, into the frame of the shape.
   Eigen::Vector3d untilted(double along, double across, double up) const;
 
   std::shared_ptr<const Shape> shape_;
@@ -52,7 +53,7 @@ class Body {
   double lift_;
   double x_ = 0.0, y_ = 0.0;
   double cosine_ = 1.0, sine_ = 0.0;
-  double left_ = 0.0, right_ = 0.0, low_ = 0.0, high_ = 0.0;  ///< bounds of the outline, slightly widened
+  double left_ = 0.0, right_ = 0.0, low_ = 0.0, high_ = 0.0;  ///< bounds of the outline along x and y, slightly widened
 };
 
 }  // namespace palpate

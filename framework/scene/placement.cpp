@@ -15,8 +15,8 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 
-/// Returns whether a vertical plane normal to (dx, dy) separates two bodies. The direction points from `a` to `b` and
-/// has unit length.
+/// Returns whether a vertical plane with the normal (dx, dy) separates two bodies. The normal has unit length and
+/// points from `a` to `b`.
 bool separates(const Body& a, const Body& b, double dx, double dy) {
   return a.reach(dx, dy) + b.reach(-dx, -dy) <= dx * (b.x() - a.x()) + dy * (b.y() - a.y());
 }
@@ -89,7 +89,8 @@ void check_inside(const std::vector<Body>& bodies, const Area& area) {
 void place_at_random(std::vector<Body>& bodies, const Area& area, std::uint64_t seed) {
   std::vector<Random> streams;
   for (std::size_t i = 0; i < bodies.size(); ++i) streams.emplace_back(seed, "scene/placement", i);
-  // All poses are drawn again if any two bodies overlap. Otherwise the first body would limit the poses of the others.
+  // All poses are drawn again if any two bodies overlap. If only one body were drawn again, the poses would not be
+  // uniformly distributed.
   constexpr int kRounds = 10'000;
   for (int round = 0; round < kRounds; ++round) {
     for (std::size_t i = 0; i < bodies.size(); ++i) draw_inside(bodies[i], area, streams[i], i);
@@ -100,7 +101,7 @@ void place_at_random(std::vector<Body>& bodies, const Area& area, std::uint64_t 
 }
 
 bool push_about(std::vector<Body>& bodies, const Area& area, const Push& push, std::uint64_t seed, int taps) {
-  // After this many draws the body stays, because another body or the rim of the area blocks it.
+  // After this many draws the body stays in its place, because other bodies or the edge of the area leave no free pose.
   constexpr int kTries = 100;
   bool moved = false;
   for (int tap = 1; tap <= taps; ++tap) {

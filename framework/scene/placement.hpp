@@ -11,17 +11,18 @@
 
 namespace palpate {
 
-/// Throws Error, with the path in the config as its place, for the first body that is not wholly inside the area. Taps
-/// would miss the part outside, but error measures would not show it.
+/// Throws Error for the first body that is not wholly inside the area. The place of the Error is the body's path in the
+/// config. A part outside the area is not allowed, because it can neither be tapped nor appear in the errors.
 void check_inside(const std::vector<Body>& bodies, const Area& area);
 
-/// Draws rotation and position of all bodies until all are inside the area and no two overlap. The result is uniform
-/// over all such poses. Each body has its own random stream, so that a further object does not change the draws of the
-/// others. Throws Error, with the path in the config as its place, if no such poses are found.
+/// Draws rotations and positions of all bodies until all bodies are inside the area and no two bodies overlap. The
+/// result is uniformly distributed over all poses with these properties. Each body has its own random stream, so an
+/// additional object does not change the draws of the others. Throws Error if no poses with these properties are found;
+/// its place is the path in the config.
 void place_at_random(std::vector<Body>& bodies, const Area& area, std::uint64_t seed);
 
-/// Moves bodies as `taps` taps would have pushed them. Returns whether a body has moved. The bodies stay inside the
-/// area and apart from each other.
+/// Moves bodies as the first `taps` taps of a run would have pushed them. Returns whether a body has moved. The bodies
+/// stay inside the area and do not overlap.
 bool push_about(std::vector<Body>& bodies, const Area& area, const Push& push, std::uint64_t seed, int taps);
 
 }  // namespace palpate

@@ -36,7 +36,7 @@ struct DrawOptions : Options {
   }
 };
 
-/// The options `draw`, which may replace a list of objects.
+/// The map `{draw: {...}}`, which may replace a list of objects.
 struct DrawnObjects : Options {
   DrawOptions draw;
   void list(Fields& fields) override {
@@ -45,7 +45,8 @@ struct DrawnObjects : Options {
 };
 
 /// Replaces each range of an object by a number. Range i becomes the number at share(i) of the range, where 0 is its
-/// lower end and 1 its upper end. Returns `count` plus the number of ranges in `tree`.
+/// lower end and 1 its upper end. `count` is the number of ranges before `tree`. Returns `count` plus the number of
+/// ranges in `tree`.
 int replace_ranges(Tree& tree, const std::string& path, const std::function<double(int)>& share, int count = 0) {
   if (const auto range = parse_continuous(tree, path)) {
     tree = number(range->at(share(count)), range->unit, tree);
@@ -57,8 +58,8 @@ int replace_ranges(Tree& tree, const std::string& path, const std::function<doub
   return count;
 }
 
-/// Reads `described`, the value of scene.objects, with each range replaced as in replace_ranges(). Returns the largest
-/// number of ranges of an object.
+/// Reads `described`, the value of scene.objects, into `options`, after replace_ranges() has replaced each range.
+/// Returns the largest number of ranges in one object.
 int read_drawn(DrawnObjects& options, Tree described, const std::function<double(int)>& share,
                const PluginSource& plugins) {
   int most = 0;
@@ -77,7 +78,7 @@ int read_drawn(DrawnObjects& options, Tree described, const std::function<double
 
 bool draws_objects(const Tree& config) {
   const Tree* objects = config.find_path(kObjects);
-  // A single object without brackets is not a draw; it is reported when the list is read.
+  // A map with `type` is a single object without the brackets of a list, not a draw. resolve() reports it as an error.
   return objects != nullptr && objects->is_map() && objects->find_path("type") == nullptr;
 }
 

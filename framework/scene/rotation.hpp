@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Rotations with palpate's own sine and cosine, which give the same bits on all machines.
+// Rotation matrices from palpate's own sine and cosine, which give the same bits on all machines.
 #pragma once
 
 #include <palpate/math.hpp>

@@ -22,7 +22,7 @@ class Desk final : public Scene {
         margin_(options.min_object_height),
         effects_(options.effects.values),
         context_{factory, *this, seed, nullptr} {
-    // Shapes are created while the scene has no bodies yet.
+    // While the shapes are created, the scene in their context has no bodies yet.
     std::vector<Body> bodies;
     for (const ObjectOptions& object : options.objects) {
       bodies.emplace_back(context_.create<const Shape>(object.shape), object.tilt);
@@ -102,7 +102,7 @@ class Desk final : public Scene {
   double desk_;
   double margin_;
   Effects effects_;
-  Context context_;  ///< outlives the plugins in bodies_
+  Context context_;  ///< declared before bodies_, because it must outlive the plugins in bodies_
   std::vector<Body> bodies_;
 };
 

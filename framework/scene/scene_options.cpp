@@ -6,7 +6,8 @@
 namespace palpate {
 namespace {
 
-/// Limit of the tilt. Below it, a vertical line points down in the object's own frame by more than rounding errors.
+/// Largest tilt, radians. Up to this tilt, a vertical line still clearly points down in the object's own frame, despite
+/// rounding errors.
 constexpr double kSteepestTilt = 80.0 / 180.0 * 3.14159265358979323846 * (1 + 1e-12);
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The options of `scene:` in a config: the area, the desk and the objects.
+// The options of `scene:` in a config: the area, the desk, the objects and the effects.
 #pragma once
 
 #include <palpate/effects.hpp>
@@ -22,15 +22,15 @@ struct AreaOptions : Options {
 
 /// The shape of an object and its pose.
 struct ObjectOptions : Options {
-  PluginChoice shape{
-      "shape", {}, nullptr};  ///< chosen by `type`; its options are listed together with the following ones
+  /// The plugin that `type` names. Its options are on the same level as `at`, `rotation` and `tilt`.
+  PluginChoice shape{"shape", {}, nullptr};
   double at[2] = {0.115, 0.115};
   double rotation = 0.0;
   double tilt = 0.0;
   void list(Fields& fields) override;
 };
 
-/// One optional group per member of Effects.
+/// The options of `scene.effects:`, with one optional group per member of Effects.
 struct EffectOptions : Options {
   Effects values;
   void list(Fields& fields) override;
@@ -48,8 +48,8 @@ struct SceneOptions : Options {
 };
 
 /// Builds the scene. With random placement, `seed` decides position and rotation of each object. `factory` creates the
-/// shapes and must outlive the scene; its exceptions are passed on. Throws Error, with the path in the config as its
-/// place, if the objects do not fit into the area.
+/// shapes and must outlive the scene; its exceptions are passed on. Throws Error if the objects do not fit into the
+/// area; its place is the path in the config.
 std::unique_ptr<const Scene> build_scene(const SceneOptions& options, std::uint64_t seed, const PluginFactory& factory);
 
 }  // namespace palpate

@@ -17,8 +17,9 @@ namespace palpate {
 namespace {
 
 constexpr std::size_t kMaxCombinations = 1'000'000;
-constexpr std::size_t kMaxSettings = 20'000'000;  ///< limit over all combinations; one setting per combination and key
-/// Layer of a swept group or type. It is above the swept options, which may not exist for every type.
+constexpr std::size_t kMaxSettings = 20'000'000;  ///< limit on the number of combinations times keys
+/// Layer of a swept group or type. It is above the layer of swept options, because an option may not exist for every
+/// type.
 constexpr Layer kChoiceLayer = kSweepLayer + 1;
 
 /// Returns whether `key` is the group or lies within it.
@@ -38,7 +39,7 @@ bool is_empty(const Tree& block) {
   return (block.is_map() && block.entries.empty()) || (block.kind == Tree::Kind::list && block.items.empty());
 }
 
-/// Returns each combination of `slower` followed by each of `faster`.
+/// Returns all combinations of `slower`, each extended by every combination of `faster`.
 std::vector<Combination> product(const std::vector<Combination>& slower, const std::vector<Combination>& faster) {
   std::vector<Combination> out;
   for (const Combination& slow : slower) {

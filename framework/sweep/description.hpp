@@ -69,12 +69,12 @@ class SweepDescription {
   const Tree& written() const { return written_; }
 
  private:
-  /// Axes with combined indices (`together`) or all combinations of their values.
+  /// Axes whose values are combined: values with the same index (`together`), or every value with every other.
   struct Part {
     std::vector<Axis> axes;
     bool together = false;
   };
-  /// Parts whose combinations follow each other.
+  /// Parts whose combinations are listed one part after the other.
   struct Block {
     std::string name;
     std::vector<Part> parts;

@@ -24,7 +24,8 @@ Error cannot(const fs::path& what, const std::string& why) {
 
 constexpr const char* kPrefix = ".sweep-";
 
-/// Removes drafts whose lock is free. Drafts of less than a minute are kept, because their lock may not be taken yet.
+/// Removes drafts whose lock is free. Keeps drafts younger than one minute, because their processes may not have locked
+/// them yet.
 void remove_abandoned(const fs::path& runs) {
   constexpr auto kYoung = std::chrono::minutes(1);
   std::error_code none;

@@ -12,7 +12,7 @@ namespace palpate {
 
 class SweepDraft {
  public:
-  /// Creates a hidden folder in `runs`, and removes those of killed processes. Throws Error.
+  /// Creates a hidden folder in `runs`, and removes the hidden folders of killed processes. Throws Error.
   explicit SweepDraft(std::filesystem::path runs);
   /// Removes the folder, unless it was published.
   ~SweepDraft();
@@ -22,9 +22,9 @@ class SweepDraft {
   /// Writes the config of a job.
   void add(const Job& job, const ResolvedConfig& config);
 
-  /// Writes config.yaml and manifest.jsonl, and renames the folder to that of the sweep. Returns false if that sweep
-  /// exists already. The existing sweep is not changed, except that deleted configs of its jobs are written again.
-  /// Throws Error.
+  /// Writes config.yaml and manifest.jsonl, and renames the folder to the directory of the sweep. Returns false if the
+  /// sweep exists already. The existing sweep is not changed, except that deleted configs of its jobs are written
+  /// again. Throws Error.
   bool publish(const SweepPlan& plan);
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The results of a sweep after fewer taps.
+// The results of a sweep as if its jobs had ended earlier: at given checkpoints.
 #pragma once
 
 #include "record/checkpoint.hpp"

@@ -22,11 +22,11 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// How the jobs planned so far use a swept key.
+/// The use of one swept key by the jobs planned so far.
 struct KeyUse {
-  const Axis* asker = nullptr;  ///< axis that sets the key; null if no combination has set it yet
-  bool takes_part = false;
-  std::set<std::string> siblings;  ///< other options next to the key
+  const Axis* asker = nullptr;     ///< axis that sets the key; null if no combination has set it yet
+  bool takes_part = false;         ///< whether some job has the option
+  std::set<std::string> siblings;  ///< options with the same parent as the key, for the hint of an error
 };
 
 /// Makes the jobs of a sweep one by one.

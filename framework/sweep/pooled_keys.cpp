@@ -18,8 +18,8 @@ bool contains(const PoolTexts& names, const std::string& name) {
 }
 
 /// Returns whether one of `keys` decides the option at `path`. A key decides the path if it lies above the path, if the
-/// path inherits from it, or if it is a strategy. A choice next to the path also decides it if some config lacks the
-/// option.
+/// path inherits from it, or if it is a strategy. A key with the same parent as the path also decides it if some config
+/// lacks the option.
 bool is_decided(const std::string& path, const PoolTexts& keys, const std::vector<Row>& configs) {
   return std::any_of(keys.begin(), keys.end(), [&](const std::string& key) {
     if (is_at_or_below(path, key) || contains(config_keys().heirs_of(key), path)) return true;

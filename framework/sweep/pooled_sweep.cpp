@@ -44,7 +44,7 @@ struct PoolRecord {
   std::string name;
 };
 
-/// A job that no earlier record has.
+/// One job of the pooled sweep. `source` and `setting` are indices into Pool::sources_ and Pool::settings_.
 struct PoolMember {
   const Job* job = nullptr;
   std::size_t source = 0;
@@ -80,8 +80,8 @@ class Pool {
 
  private:
   void collect_members() {
-    std::map<std::pair<std::string, std::string>, std::size_t>
-        known;  // job number by id and, if names are groups, by record
+    // index into members_ by record name ("" unless `by` contains `name`) and job id
+    std::map<std::pair<std::string, std::string>, std::size_t> known;
     int repeated = 0;
     for (std::size_t source = 0; source < sources_.size(); ++source) {
       for (const Job& job : sources_[source].sweep.jobs) {
@@ -223,7 +223,8 @@ class Pool {
     return seed != nullptr ? seed->text : std::string();
   }
 
-  /// Adds a note for each record that lacks a scene of other records, because then the means are over different scenes.
+  /// Adds a note for each scene that only some records contain, because the means of the records are then over
+  /// different scenes.
   void note_scenes() {
     for (std::size_t key = 0; key < keys_.size(); ++key) {
       if (!is_scene(keys_[key])) continue;
@@ -251,7 +252,7 @@ class Pool {
   std::map<std::pair<std::size_t, std::map<std::string, std::string>>, std::size_t> known_settings_;
   std::vector<PooledSetting> settings_;
   std::vector<PoolMember> members_;
-  PoolTexts keys_;                 ///< the seed is the last
+  PoolTexts keys_;                 ///< the last key is the seed
   std::vector<PoolTexts> values_;  ///< values of each setting, one per key except the seed
   PooledSweep out_;
 };

@@ -25,9 +25,9 @@ struct PooledSweep {
 /// not affect results, such as `log`, are not keys.
 ///
 /// The value of a key that a record does not sweep comes from the configs of its jobs. Values are equal if the configs
-/// are equal: `2 cm` and `0.02 m`, or `scene=ring` and a config with the same objects. The text of a value is that of
-/// the first sweep with the value. If two different values have the same text, the later one is followed by the name of
-/// its record. The value of `strategy` for a record that does not sweep it is the name of the record.
+/// are equal: `2 cm` and `0.02 m`, or `scene=ring` and a config with the same objects. If sweeps write the same value
+/// differently, the text of the first sweep is used. If two different values have the same text, the name of the record
+/// is appended to the later one. A record that does not sweep `strategy` has its own name as the value of this key.
 ///
 /// A run in several records counts as one job: the first one that has ended. If `by` has `name`, it is one job per
 /// record. The directory of the sweep is the common folder of the records. Throws Error for an empty list, for a

@@ -29,7 +29,8 @@ class ValueClasses {
   std::map<std::string, std::string> parents_;
 };
 
-/// Returns the part of a config at `key`, without the values of other keys; "" if there is none.
+/// Returns the canonical text of the part of a config at `key`, without the values of other keys; "" if the config has
+/// no such part.
 std::string identity_at(const Tree& config, const std::string& key, const std::vector<std::string>& keys) {
   const Tree* found = config.find_path(key);
   if (found == nullptr) return {};

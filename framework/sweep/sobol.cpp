@@ -15,7 +15,7 @@ namespace palpate {
 namespace {
 
 constexpr std::int64_t kMaxSamples = 100'000;
-constexpr std::size_t kMaxKeys = 1000;  // Boost's tables end at 3667
+constexpr std::size_t kMaxKeys = 1000;  // Boost's tables end at dimension 3667
 
 ContinuousRange parse_range(const Tree::Entry& entry) {
   if (const auto range = parse_continuous(entry.value, entry.key)) return *range;
@@ -23,7 +23,7 @@ ContinuousRange parse_range(const Tree::Entry& entry) {
   throw Error(entry.value.place.text(), entry.key + ": " + shown + " is not a continuous range", kContinuousHint);
 }
 
-/// Rounds to nine digits, which still distinguish all points.
+/// Rounds to nine significant digits, which still distinguish all points.
 double shortened(double value) {
   const std::string text = fmt::format("{:.9g}", value);
   double out = value;
@@ -65,8 +65,8 @@ std::vector<Axis> sobol_axes(const Tree& described, ValueCount& count) {
   count.add(keys->entries.size() * static_cast<std::size_t>(samples), keys->place, "sweep.sobol");
   std::vector<Axis> axes;
   std::vector<ContinuousRange> ranges;
-  // A digital shift: one random bit pattern per axis is added without carry to all points, as for the initial taps. The
-  // points stay evenly spread, and the first one is no longer the corner of all lower ends.
+  // A digital shift combines all points with one random bit pattern per axis by XOR, as for the initial taps. The
+  // points stay evenly spread, and the first point no longer has the lower end of every range.
   std::vector<std::uint64_t> shift;
   Random random(0, "sweep.sobol");
   for (const Tree::Entry& entry : keys->entries) {
@@ -75,8 +75,8 @@ std::vector<Axis> sobol_axes(const Tree& described, ValueCount& count) {
     shift.push_back(random.bits());
   }
   boost::random::sobol sequence(axes.size());
-  std::vector<std::uint64_t> point(axes.size(),
-                                   0);  // the origin: the first point of the sequence, which Boost omits
+  // The origin is the first point of the sequence, which Boost omits.
+  std::vector<std::uint64_t> point(axes.size(), 0);
   for (std::int64_t i = 0; i < samples; ++i) {
     for (std::size_t k = 0; k < axes.size(); ++k) {
       const double share = static_cast<double>((point[k] ^ shift[k]) >> 11) * 0x1.0p-53;

@@ -75,7 +75,7 @@ std::string manifest_text(const Sweep& sweep, const std::string& id) {
 
 std::string sweep_id(const Tree& config, const Sweep& sweep) {
   Tree identity = Tree::map();
-  // The config is parsed again, because later checks compare with the file.
+  // Parse the text of the config, so that the id equals the one that read_sweep() later computes from the file.
   Tree parsed = parse_yaml(to_yaml(config), "config.yaml");
   parsed.erase_path(kThreads);
   for (const char* const group : {"belief.engine", "belief"}) {

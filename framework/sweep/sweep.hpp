@@ -48,7 +48,8 @@ std::string manifest_text(const Sweep& sweep, const std::string& id);
 /// the start of the sweep.
 Sweep read_sweep(const std::filesystem::path& directory);
 
-/// Returns the name that all jobs have from the command line, or else the name in the sweep's config.
+/// Returns the value of the swept key `name` if all jobs have the same one, as after `name=X` on the command line.
+/// Otherwise returns the name in the sweep's config.
 std::string sweep_name(const Sweep& sweep);
 
 /// Returns all indices into Sweep::jobs.
@@ -65,8 +66,8 @@ inline constexpr const char* kOfRun = "summary.";
 /// The number of threads, an option that does not change results.
 inline constexpr const char* kThreads = "belief.engine.threads";
 
-/// Returns a row of results.csv: job, id, swept keys, and summary fields. A summary field with the name of a key is
-/// called `summary.taps` for example, and left out if its value is that of the key.
+/// Returns a row of results.csv: job, id, swept keys, and summary fields. A summary field with the name of a swept key,
+/// such as `taps`, is renamed to `summary.taps`. It is left out if it has the same value as the key.
 Row result_row(const Sweep& sweep, const Job& job, Row summary);
 
 /// Returns the summary field `name`, for example `taps` or `summary.taps`, in a row of results.csv; null if there is

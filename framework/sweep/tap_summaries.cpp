@@ -52,7 +52,7 @@ std::optional<std::vector<Row>> TapSummaries::kept(std::size_t job) const {
   const fs::path file = job_directory(sweep_, sweep_.jobs[job]) / kSummariesFile;
   if (!is_there(file)) return std::nullopt;
   std::vector<Row> rows;
-  // A damaged or missing file is computed again.
+  // The rows of a damaged file are computed again.
   const auto trouble = catch_error([&] { read_json_lines(file, [&](Row row) { rows.push_back(std::move(row)); }); });
   if (trouble && trouble->kind() == Error::Kind::run) throw *trouble;
   if (trouble) return std::nullopt;

@@ -28,7 +28,7 @@ class TapSummaries {
   /// `sweep` must outlive the object.
   TapSummaries(const Sweep& sweep, Use use, std::size_t fewest = 0);
 
-  /// Returns whether a job has stored rows, without reading them.
+  /// Returns whether any job has stored rows, without reading them.
   static bool any_kept(const Sweep& sweep);
 
   /// Returns the summary of each job; nullopt for a job that has not ended.
@@ -37,16 +37,16 @@ class TapSummaries {
   /// Returns the jobs without valid stored rows.
   const std::vector<std::size_t>& missing() const { return missing_; }
 
-  /// Computes and stores the rows of one of these jobs. Throws Error.
+  /// Computes and stores the rows of `job`, one of the jobs in missing(). Throws Error.
   void compute(const RunEnvironment& environment, std::size_t job) const;
 
-  /// Calls `use` for the jobs in missing(), whose rows any process has stored since. Throws Error if rows are still
-  /// missing.
+  /// Calls `use` for the jobs in missing(). Their rows must have been stored since, by this process or others. Throws
+  /// Error if rows are still missing.
   void read_missing() const;
 
  private:
   std::optional<std::vector<Row>> kept(std::size_t job) const;
-  /// Returns whether the job had valid stored rows.
+  /// Calls `use` for a job with valid stored rows. Returns false if it has none.
   bool hand_over(std::size_t job) const;
 
   const Sweep& sweep_;

@@ -21,15 +21,15 @@ class GrowingLog {
   const std::filesystem::path& file() const { return reader_.file(); }
 
   /// Returns the lines that were added since the last call. If the file is gone or no longer begins with the known
-  /// lines, sets `anew` and returns all lines of the file. Throws the errors of RecordReader. After an error and a
-  /// change of the file, the next call begins at the start of the file.
+  /// lines, sets `anew` and returns all lines of the file. Throws the errors of RecordReader. If the file changes after
+  /// an error, the next call begins at the start of the file.
   std::vector<RecordLine> read(bool& anew);
 
   /// Makes the next read() begin at the start of the file.
   void restart() { stamp_ = {}, known_.clear(); }
 
  private:
-  /// inode, size and time of change of the file
+  /// inode, size in bytes, and modification time (seconds, nanoseconds) of the file
   using Stamp = std::tuple<std::uint64_t, std::uint64_t, std::int64_t, std::int64_t>;
 
   RecordReader reader_;

@@ -8,14 +8,14 @@
 namespace palpate {
 
 /// A run or a sweep with a page. The page begins with the HTML of page() and then repeatedly requests news(). Each
-/// request has the page's position in the record, a text of letters, digits and dots that only this object interprets.
-/// No member throws Error. Instead, the page shows the problem of a damaged record.
+/// request contains the page's position in the record. The position is a text of letters, digits and dots that only
+/// this object interprets. No member throws Error. Instead, the page shows the problem of a damaged record.
 class LiveRecord {
  public:
   virtual ~LiveRecord() = default;
 
-  /// Reads changes of the record for about this many seconds; a single tap may take longer. Returns whether the record
-  /// has more changes to read.
+  /// Reads and processes changes of the record for about this many seconds; a single tap may take longer. Returns
+  /// whether the record has more changes to read.
   virtual bool look(double seconds) = 0;
 
   /// Returns the HTML page in the state of the last look().

@@ -72,7 +72,8 @@ bool RunFollower::look(double seconds) {
 }
 
 void RunFollower::read_record() {
-  // The lock is read before the record. If the process ends in between, it has then recorded all its taps.
+  // Check the lock before reading the record. If the process ends in between, the record then already contains all its
+  // taps.
   const bool held = is_running(directory_);
   const std::optional<Row> summary = read_outcome(directory_);
   const std::string standing = (held ? "held " : "") + (summary ? to_json(*summary) : "");
@@ -98,7 +99,8 @@ void RunFollower::read_record() {
   if (recording_ && pending_.empty()) recording_->summary = summary;
 }
 
-/// Adds the times of taps, because a tap's time is written after the tap.
+/// Adds the times read since the last call. They come separately, because the record contains the times of a tap after
+/// the tap.
 void RunFollower::add_times() {
   std::vector<TapTimes>& known = recording_->timings;
   if (known.size() == timings_.size()) return;
@@ -119,7 +121,7 @@ void RunFollower::replay_next_tap() {
   const bool own_scores = builder_->has_own_scores();
   builder_->advance();
   builder_->thin(kMostNumbers);
-  // The present pages lack the new map of scores and must reload.
+  // Open pages lack the new map of scores and must reload.
   if (builder_->has_own_scores() != own_scores) ++generation_;
   if (pending_.empty()) recording_->summary = read_outcome(directory_);
 }

@@ -15,7 +15,7 @@
 namespace palpate {
 
 /// Follows the run in a directory, which may have no tap yet. Writes nothing. The page equals the report of the run,
-/// except that it lacks the maps of some moments of a long run.
+/// except that it lacks the maps after some taps of a long run.
 ///
 /// If the run is killed and resumed, the page continues. If another record replaces the record (--force), the pages
 /// start again.
@@ -46,7 +46,7 @@ class RunFollower final : public LiveRecord {
   std::unique_ptr<RecordedRun> recording_;   ///< null before the first tap
   std::unique_ptr<HistoryBuilder> builder_;  ///< has as many taps as recording_
   std::string trouble_;                      ///< error of the present record, "" for none
-  std::string standing_;                     ///< state of lock and summary at the last look
+  std::string standing_;                     ///< state of lock and summary at the last reading
   int generation_ = 1;  ///< number of replacements of the record; pages of another generation reload
   int revision_ = 0;    ///< number of changes without a new tap
 };

@@ -42,10 +42,10 @@ using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 
-/// time between looks at a record, so that pages show a tap within half a second
+/// pause between two readings of a record, so that pages show a tap within half a second
 constexpr milliseconds kLookEvery(100);
-constexpr double kLookFor = 0.05;     ///< seconds per look, during which requests wait
-constexpr double kFirstLook = 1.0;    ///< seconds of the look before a page is made; most runs need less
+constexpr double kLookFor = 0.05;     ///< seconds per reading of a record, during which requests wait
+constexpr double kFirstLook = 1.0;    ///< seconds of reading before a page is made; most runs need less
 constexpr seconds kAnswerWithin(25);  ///< longest wait of a request for news
 /// longest time without data on a connection that sends a request or reads a response
 constexpr seconds kMostSilence(10);
@@ -74,7 +74,7 @@ bool same_in_constant_time(std::string_view said, std::string_view token) {
   return differ == 0;
 }
 
-/// Returns a Host field without its port, because the port differs behind a tunnel. Returns "" for an invalid field.
+/// Returns a Host field without its port, because the port differs behind a tunnel.
 std::string host_of(std::string_view text) {
   const auto end = text.rfind(':');
   const bool bare = end == std::string_view::npos || text.find(']', end) != std::string_view::npos;
@@ -235,8 +235,8 @@ class Server::Impl::Connection : public std::enable_shared_from_this<Connection>
     });
   }
 
-  /// Waits until the client closes the connection, and ignores further data. If this connection waits for news, it is
-  /// then closed.
+  /// Reads and ignores data until the client closes the connection, then closes it here, too, even if a request still
+  /// waits for news.
   void await_close() {
     if (awaits_close_) return;
     awaits_close_ = true;
@@ -296,7 +296,8 @@ bool Server::Impl::is_own_name(const std::string& host) const {
   beast::error_code none;
   const auto number = asio::ip::make_address(host, none);
   if (none) return host == "localhost" || (!acceptor.local_endpoint().address().is_loopback() && host == host_name());
-  // A numeric address is always allowed, because a website cannot send requests for it under the website's own name.
+  // Numeric addresses are safe, because requests of a website with a foreign name contain this name instead. A server
+  // that only listens on a loopback address accepts only loopback addresses.
   return number.is_loopback() || !acceptor.local_endpoint().address().is_loopback();
 }
 

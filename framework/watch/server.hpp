@@ -24,7 +24,7 @@ struct ServerOptions {
   std::string address = "127.0.0.1";  ///< numeric address; any machine that can reach this address can reach the server
   int port = 0;                       ///< 0 stands for any free port
   /// Number of seconds after which the server ends if no process works on the record and no request arrives. 0 stands
-  /// for never. It must be longer than the time for which a browser suspends a page in the background.
+  /// for never. The value must be longer than the time for which a browser suspends a page in the background.
   int patience = 0;
 };
 

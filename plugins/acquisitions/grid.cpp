@@ -29,8 +29,9 @@ class GridSearch final : public Acquisition {
   GridSearch(const Options& options, const Context& context) : count_(options.count), area_(context.scene.area()) {}
 
   QuantitySet reads() const override { return {quantity::kDeskPosition}; }
-  /// Scores a candidate by its distance from the next lattice point. The score is 1 at this point and decreases to 0 at
-  /// the corner of the area that is farthest away. The nearest candidate has the highest score.
+  /// Scores a candidate by its distance from the next lattice point. The score is 1 at this point and decreases
+  /// linearly with the distance. It would be 0 at a distance of the area's diagonal. The nearest candidate has the
+  /// highest score.
   void score(const BeliefView& belief, VectorOut out) const override {
     const auto [x, y] = due(belief.taps().count - belief.taps().initial);
     const Points3& places = belief.candidates().starts;

@@ -61,17 +61,17 @@ std::vector<int> sample_of(const std::vector<int>& all, std::size_t most) {
 
 }  // namespace
 
-/// Let S outlines be sampled, of which n cover a position c. The expected squared error there is n (S - n) / S^2 if p
-/// is used. Let n_x of them cover a position x, and n_xc both. A tap at x shows whether x is covered. On average it
-/// reduces the squared error at c by
-///     (n_xc - n_x n_c / S)^2 / (n_x (S - n_x))     (the reduction of a variance by a covariance).
+/// Let S outlines be sampled, of which n_c cover a position c. If the prediction at c is n_c / S, its expected squared
+/// error is n_c * (S - n_c) / S^2. Let n_x outlines cover a position x, and n_xc outlines both positions. A tap at x
+/// shows whether x is covered. On average it reduces the squared error at c by
+///     (n_xc - n_x * n_c / S)^2 / (n_x * (S - n_x))     (the reduction of a variance by a covariance).
 /// The sum over all positions is an area, like the expected area of new objects. The score is the sum of both, divided
 /// by the largest such sum, so that its maximum is 1.
 ///
 /// On larger desks more objects are possible, and the weight of new objects grows with the side length. Otherwise the
 /// last objects would be found late or never, while known outlines are refined to the millimetre. The largest score
-/// grows by the same factor, so that it keeps its weight in sums with other acquisitions. Benefits and costs:
-/// framework/docs/clutter.md.
+/// grows by the same factor, so that this acquisition keeps its weight in sums with other acquisitions. Benefits and
+/// costs: framework/docs/clutter.md.
 struct VarianceReductionOptions : Options {
   double new_object_weight = 1.5;
   void list(Fields& fields) override {

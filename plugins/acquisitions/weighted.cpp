@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The paper's exploration function e(x) = u(x) w(x) (Sun and Min 2021, section III). The label GP has w. The options
-// `label: {prior_mean, clip}` set the prior mean and the clipping of w.
+// The paper's exploration function e(x) = u(x) * w(x) (Sun and Min 2021, section III). w is the mean of the label GP.
+// The options `label: {prior_mean, clip}` set the prior mean and the clipping of w.
 #include <palpate/acquisition.hpp>
 #include <palpate/plugin.hpp>
 

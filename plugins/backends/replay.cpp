@@ -70,7 +70,7 @@ std::string unguarded(const std::string& cell) {
   return guarded ? cell.substr(1) : cell;
 }
 
-/// Rows of a CSV file by column name, with the columns of a contact.
+/// Rows of a CSV file, read by column name. The columns of a contact (x, y, outcome, height) must exist.
 class Table {
  public:
   explicit Table(const std::string& file) : file_(file) {
@@ -163,7 +163,7 @@ class Table {
 
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
-/// Returns the line of a row, from above if the table has no lengths. A missing number is NaN.
+/// Returns the line of a row, which is from above if the table has no column `length`. A missing number is NaN.
 TapLine read_line(const Table& table) {
   const auto number = [&](const char* column) { return table.number(column, kMissing); };
   if (!table.has("length")) return line_from_above({number("x"), number("y")});
@@ -172,8 +172,8 @@ TapLine read_line(const Table& table) {
           number("length")};
 }
 
-/// Returns the larger distance between the starts and between the ends of two lines. Lines from above are compared by
-/// their positions; one of them is far from any line that is not from above.
+/// Returns the larger distance between the starts and between the ends of two lines. If both are from above, returns
+/// the distance between their positions. If only one is from above, returns infinity.
 double distance_between(const TapLine& one, const TapLine& other) {
   if (one.from_above != other.from_above) return std::numeric_limits<double>::infinity();
   const double starts = math::hypot(one.start.x() - other.start.x(), one.start.y() - other.start.y());
@@ -181,7 +181,7 @@ double distance_between(const TapLine& one, const TapLine& other) {
   return std::max((one.start - other.start).norm(), (one.at(one.length) - other.at(other.length)).norm());
 }
 
-/// Reads how far the tool came along a line that is not from above.
+/// Reads how far the tool moved along a line that is not from above.
 void read_along(const Table& table, Recorded& tap) {
   const double along = table.number("along", kMissing);
   if (!std::isfinite(tap.line.at(tap.line.length).sum())) throw Error(table.where(), "lacks z, direction or length");

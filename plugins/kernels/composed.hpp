@@ -21,8 +21,8 @@ struct PartsOptions : Options {
   }
 };
 
-/// A kernel of several parts. Its parameters are named kernels.0.length_scale, in the order of the parts. `Join`
-/// defines the combination:
+/// A kernel of several parts. Its parameters have names such as kernels.0.length_scale, in the order of the parts.
+/// `Join` defines the combination:
 ///     static constexpr double kNothing;          value of a combination of no parts
 ///     static void apply(whole, part);            combines the covariances of a part with those of the previous parts
 ///     static void join_slopes(before, own, whole, part);   combines derivatives, one matrix per parameter
@@ -88,8 +88,8 @@ class Composed : public Kernel {
   }
 
  protected:
-  /// Combines all parts except the first with `out`, which already has the values of the first. `fill(part, j, own)`
-  /// computes column j of a part.
+  /// Combines all parts except the first with `out`, which already has the values of the first part. `fill(part, j,
+  /// own)` computes column j of a part.
   template <class Fill>
   void join_others(MatrixOut out, const Fill& fill) const {
     Eigen::VectorXd own(out.rows());

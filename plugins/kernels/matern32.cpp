@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Matern kernel with nu = 3/2: k = (1 + s) exp(-s), s = sqrt(3) r (Rasmussen and Williams 2006, equation 4.17).
+// Matern kernel with nu = 3/2: k = (1 + s) * exp(-s), s = sqrt(3) * r (Rasmussen and Williams 2006, equation 4.17).
 #include "stationary/stationary.hpp"
 
 namespace palpate::kernels {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Matern kernel with nu = 5/2: k = (1 + s + s^2 / 3) exp(-s), s = sqrt(5) r (Rasmussen and Williams 2006, eq. 4.17).
+// Matern kernel with nu = 5/2: k = (1 + s + s^2 / 3) * exp(-s), s = sqrt(5) * r (Rasmussen and Williams 2006, eq.
+// 4.17).
 #include "stationary/stationary.hpp"
 
 namespace palpate::kernels {

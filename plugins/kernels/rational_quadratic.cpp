@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Rational quadratic kernel, k = (1 + t)^-alpha, t = r^2 / (2 alpha): a mixture of squared exponentials over all
+// Rational quadratic kernel, k = (1 + t)^-alpha, t = r^2 / (2 * alpha): a mixture of squared exponentials over all
 // length scales (Rasmussen and Williams 2006, equation 4.19).
 #include "stationary/stationary.hpp"
 
@@ -39,7 +39,7 @@ class RationalQuadraticShape {
   std::vector<KernelParameter> parameters() const { return {{"alpha", alpha_}}; }
   void set_parameters(const VectorView& values) { alpha_ = values(0); }
 
-  /// d log k / d log alpha = alpha (t / (1 + t) - log(1 + t)).
+  /// d log k / d log alpha = alpha * (t / (1 + t) - log(1 + t)).
   void own_slopes(const Block& z, Numbers k, Numbers slope) const {
     for (Eigen::Index i = 0; i < z.size(); ++i) {
       const double t = bounded_t(z(i));

@@ -109,7 +109,8 @@ Child::~Child() {
     ::kill(-pid_, SIGTERM);
     wait_for_end();
   }
-  // The group is killed before the program is reaped, because its process id cannot be reused until then.
+  // The group is killed before the program is reaped, because the id of the group, which is the process id of the
+  // program, cannot be reused until then.
   kill_descendants();
   stderr_.trim();
 }
@@ -142,7 +143,8 @@ ssize_t Child::read_some() {
 
 std::optional<Child::ReadResult> Child::read_more(const WaitLimit& limit) {
   if (limit.stopped()) return ReadResult::interrupted;
-  // This is checked before the pipe is read. If the program has ended, all its output is then already in the pipe.
+  // The end of the program is checked before the pipe is read. If the program has ended, all its output is already in
+  // the pipe.
   const bool over = gone();
   if (wait_for_event(output_, POLLIN, over ? Clock::now() : limit.until)) {
     if (read_some() == 0) return ReadResult::ended;

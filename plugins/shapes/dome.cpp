@@ -20,7 +20,7 @@ class Dome final : public Round {
       : Dome(o, (o.diameter * o.diameter / 4 + o.height * o.height) / (2 * o.height)) {}
 
   double support(const Vector3d& direction) const override {
-    // If the support point of the sphere is below the plane 0, the support point of the cap is on the cap's rim.
+    // If the support point of the sphere is below the plane z = 0, the support point of the cap is on the cap's rim.
     const double length = direction.norm();
     const double centre = height_ - ball_;
     if (centre * length + ball_ * direction.z() < 0.0) return disk_support(direction, rim_);

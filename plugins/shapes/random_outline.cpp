@@ -72,8 +72,9 @@ Outline star(double roughness, Random& random) {
   return out;
 }
 
-/// Bends the x axis to an arc of a circle. Afterwards no edges cross, because the map is injective on a star. No point
-/// of the star is as far from the axis as the centre of the circle, and the arc is less than a full circle.
+/// Bends the x axis to an arc of a circle. The map is injective on a star, so no edges cross afterwards. This holds
+/// because no point of the star is as far from the axis as the centre of the circle, and the arc is less than a full
+/// circle.
 void bend(Outline& outline, Random& random) {
   const auto [left, right, low, high] = bounds(outline);
   const double most = std::min(0.75 / std::max(-low, high), 0.3 * kTurn / std::max(-left, right));

@@ -96,7 +96,7 @@ struct Quadric {
     const double a = weighted.dot(u);
     const double b = weighted.dot(from);
     const double c = weights.cwiseProduct(from).dot(from) - level;
-    // the inside satisfies a x^2 + 2 b x + c <= 0
+    // the inside satisfies a * x^2 + 2 * b * x + c <= 0
     const double discriminant = b * b - a * c;
     if (discriminant < 0.0 && a >= 0.0) return interval.clear();
     const double q = -(b + std::copysign(std::sqrt(std::max(0.0, discriminant)), b));
@@ -128,12 +128,13 @@ struct Quadric {
   }
 };
 
-/// Returns the largest scalar product of `direction` with a point of the disk in the plane 0 around the axis.
+/// Returns the largest scalar product of `direction` with a point of a disk. The disk is in the plane z = 0, and its
+/// centre is on the z axis.
 inline double disk_support(const Vector3d& direction, double radius) {
   return radius * math::hypot(direction.x(), direction.y());
 }
 
-/// A quadric that is clipped by the plane 0 and by the plane at a height.
+/// A quadric that is clipped by the planes z = 0 and z = `height`.
 class Round : public Shape {
  public:
   Round(const Quadric& quadric, double height) : quadric_(quadric), height_(height) {}

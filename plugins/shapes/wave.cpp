@@ -86,13 +86,14 @@ class Wave final : public Shape {
 
   double height_at(double s) const { return o_.height + o_.amplitude * math::cos(2.0 * kPi * s / o_.period); }
 
-  /// Returns the height of the line's point at x above the top.
+  /// Returns the height above the top of the point at distance x along the line.
   double clearance(const Line& line, double x) const {
     return line.origin.z() + x * line.direction.z() - height_at(line.origin.x() + x * line.direction.x());
   }
 
   /// Returns the first x after `from` where the slope of the clearance may change its sign. The slope along the line is
-  /// u_z + A k u_s sin(k s). It is 0 where sin(k s) = -u_z / (A k u_s), at two positions per period.
+  /// u_z + A * k * u_s * sin(k * s), where u is the direction, A the amplitude and k the wave number. The slope is 0
+  /// where sin(k * s) = -u_z / (A * k * u_s), at two positions per period.
   double next_turn(const Line& line, double from) const {
     const double along = line.direction.x();
     const double steepest = o_.amplitude * k_ * along;
@@ -106,8 +107,8 @@ class Wave final : public Shape {
     return from + (std::min(after(turn), after(kPi - turn)) - phase) / rate;
   }
 
-  /// Returns the zero of the clearance between two such positions, found by bisection and Newton's method. There the
-  /// clearance is monotonic.
+  /// Returns the zero of the clearance between two positions with different signs, found by bisection and Newton's
+  /// method. Between them, the clearance must be monotonic.
   double crossing(const Line& line, double above, double below) const {
     double x = 0.5 * (above + below);
     for (int i = 0; i < 100 && std::abs(below - above) > 1e-16; ++i) {
@@ -127,8 +128,8 @@ class Wave final : public Shape {
     const double bottom = std::abs(along) * half_length_;
     if (up <= 0.0) return bottom;
     double best = bottom + up * height_at(half_length_);
-    // On the top, the maximum is at an end of the wave, or on the farthest crest in this direction, where along = up A
-    // k sin(k s).
+    // On the top, the maximum is at an end of the wave, or on the farthest crest in this direction, where along = up *
+    // A * k * sin(k * s).
     if (std::abs(along) > up * o_.amplitude * k_) return best;
     const double phase = o_.amplitude > 0.0 ? math::asin(along / (up * o_.amplitude * k_)) : 0.0;
     double s = std::abs(phase) / k_;

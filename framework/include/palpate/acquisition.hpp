@@ -7,8 +7,9 @@
 
 namespace palpate {
 
-/// Laws, checked by the contract tests: the score is a pure function of the belief; the same belief gives the same
-/// bytes, without clock or state. It is finite for every candidate. It reads exactly the quantities of reads().
+/// Laws, checked by the contract tests: scores are a pure function of the belief. The same belief gives the same bytes
+/// at any time and after any earlier calls. Every score is finite. score() reads exactly the quantities that reads()
+/// returns.
 class Acquisition {
  public:
   static constexpr const char* kKind = "acquisition";
@@ -19,10 +20,11 @@ class Acquisition {
   /// quantities are built. A belief that does not offer one of them is rejected before the first tap.
   virtual QuantitySet reads() const = 0;
 
-  /// Scores all candidates at once; `out` has M elements. The candidate with the highest score is tapped next.
+  /// Scores all M candidates at once; `out` has M elements. The candidate with the highest score is tapped next.
   virtual void score(const BeliefView& belief, VectorOut out) const = 0;
 
-  /// Returns the size of a typical score before any tap, which is the unit of the tie tolerance if scores become small.
+  /// Returns the size of a typical score before the first tap. Scores are tied if they differ by at most
+  /// `tie_tolerance` times (|best score| + this size).
   virtual double prior_scale() const = 0;
 };
 

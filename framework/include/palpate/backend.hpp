@@ -11,15 +11,15 @@
 
 namespace palpate {
 
-/// Laws; the contract tests check all that need no robot. A failed tap is an outcome, never an invented height. The
-/// destructor leaves a robot in a safe state. Only tap() moves the robot. A repeatable backend gives the same result
-/// for the same request, independent of earlier requests.
+/// Laws of every backend; the contract tests check the laws that can be checked without a robot. A failed tap is
+/// reported as an outcome, never as an invented height. The destructor leaves a robot in a safe state. Only tap() moves
+/// the robot. A repeatable backend gives the same result for the same request, independent of earlier requests.
 class Backend {
  public:
   static constexpr const char* kKind = "backend";
 
-  /// Whether only one run at a time can use the backend's hardware, such as a robot's arm. A backend with this constant
-  /// set to true in its own class makes a sweep run its jobs one after another, with any number of workers.
+  /// Whether only one run at a time can use the backend's hardware, such as a robot's arm. A backend class may redefine
+  /// this constant as true. A sweep then runs its jobs one after another, even with several workers.
   static constexpr bool kOneAtATime = false;
 
   virtual ~Backend() = default;
@@ -29,8 +29,8 @@ class Backend {
   /// nothing was tapped.
   virtual TapResult tap(const TapRequest& request) = 0;
 
-  /// Returns whether a tap can be repeated without risk. If not, each tap is written to the log and synced before it
-  /// moves.
+  /// Returns whether a tap can be repeated without risk. If not, the request of each tap is written to the record and
+  /// synced to disk before the robot moves.
   virtual bool repeatable() const = 0;
 
   /// Returns whether the backend taps along lines that are not from above. If not, beliefs with such lines are
@@ -42,8 +42,8 @@ class Backend {
   virtual void reaches(const Candidates& /*lines*/, BoolOut out) const { out.setConstant(true); }
 
   /// Describes what tap() would do with `request`, for a person who must approve every tap (`palpate run --step`). The
-  /// lines, without line ends, contain for example the approach, depth, speed and force limits. Empty: only the
-  /// position is known. Called only for such a run; it must not change the taps.
+  /// lines, without line ends, contain for example the approach, depth, speed and force limits. An empty result means
+  /// that the backend knows only the position. Called only for a run with `--step`; must not change the taps.
   virtual std::vector<std::string> describe(const TapRequest& /*request*/) { return {}; }
 
   /// A property of the robot that taps have determined.
@@ -52,18 +52,18 @@ class Backend {
     std::string value;
   };
   /// Returns the values that the config left open and that the taps of this process have determined. At the end of the
-  /// run, a line `note` of the record stores each of them.
+  /// run, each value is stored in a line `note` of the record.
   virtual std::vector<Learnt> learnt() const { return {}; }
 
-  /// Returns the quantities of TapRequest::predicted on which taps depend, constant over the object's lifetime: none,
-  /// `height_mean` and `height_std`, or these and `object_probability`.
+  /// Returns the quantities of TapRequest::predicted on which taps depend, constant over the object's lifetime. The set
+  /// is empty, or contains `height_mean` and `height_std`, or these two and `object_probability`.
   virtual QuantitySet predicts() const { return {}; }
 
   /// Returns the quantities that show() reads, constant over the object's lifetime.
   virtual QuantitySet reads() const { return {}; }
 
-  /// Displays the surface to people who watch a robot. Called after every tap, once the record and the belief contain
-  /// it, and when a run is resumed. It must not change the taps. An Error ends the run.
+  /// Displays the surface to people who watch a robot. Called after every tap, once record and belief contain the tap,
+  /// and when a run is resumed. It must not change the taps. An Error ends the run.
   virtual void show(const BeliefView& /*belief*/) {}
 
   /// Returns whether the taps are made on the scene of the config, so that errors against this scene are meaningful.

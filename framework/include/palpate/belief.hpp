@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The belief: what the taps so far say of the scene, and of the lines along which the next tap may be made.
+// The belief: a model of the scene that learns from the taps, and the lines along which the next tap may be made.
 #pragma once
 
 #include <palpate/belief_quantities.hpp>
@@ -28,9 +28,9 @@ struct Candidates {
   Points3 starts;           ///< M x 3, metres
   Points3 directions;       ///< M x 3 unit vectors, or one row if all are equal
   Eigen::VectorXd lengths;  ///< M values, metres, or one if all are equal
-  bool from_above = false;  ///< TapLine::from_above of all of them
-  bool fixed = true;        ///< for the whole run; else drawn before each tap
-  int rows = 0;             ///< of a grid of fixed lines, row after row: M = rows x columns
+  bool from_above = false;  ///< whether TapLine::from_above is true for all lines
+  bool fixed = true;        ///< the same lines for the whole run; else drawn before each tap
+  int rows = 0;             ///< number of rows if fixed lines form a grid, stored row by row: M = rows x columns
   int columns = 0;
 
   Eigen::Index size() const { return starts.rows(); }
@@ -40,11 +40,11 @@ struct Candidates {
   }
 };
 
-/// The taps that a belief has taken in.
+/// The taps whose results a belief contains.
 struct TapsSoFar {
-  int count = 0;                       ///< of all taps, failed taps included
-  int initial = 0;                     ///< those of them that the initial design chose
-  std::vector<TapReading> readings{};  ///< in the order of the taps, as they are read now; failed taps have none
+  int count = 0;                       ///< number of taps, including failed taps
+  int initial = 0;                     ///< number of taps that the initial design chose
+  std::vector<TapReading> readings{};  ///< current readings, in the order of the taps; failed taps have none
 
   /// Counts a tap.
   void add(const TapRequest& request) {
@@ -60,41 +60,41 @@ class BeliefView {
 
   virtual const Candidates& candidates() const = 0;
   virtual const TapsSoFar& taps() const = 0;
-  /// Returns M values of a quantity. Throws Error for a quantity that the reader did not declare.
+  /// Returns the values of a quantity, one per candidate. Throws Error for a quantity that the reader did not declare.
   virtual const Eigen::VectorXd& values(std::string_view quantity) const = 0;
-  /// Returns a quantity that is one number; nullopt while it has no value.
+  /// Returns the value of a quantity that is a single number; nullopt while the quantity has no value.
   virtual std::optional<double> scalar(std::string_view /*quantity*/) const { return std::nullopt; }
-  /// For readers of `hypotheses`.
+  /// Returns the sampled hypotheses of the footprint. Only for readers that declare the quantity `hypotheses`.
   virtual const HypothesisSample& hypotheses() const {
     static const HypothesisSample none;
     return none;
   }
 };
 
-/// From when on a reader reads.
+/// The event in a run from which on a reader reads its quantities.
 enum class Stage {
   first_tap,
   first_object_contact,
-  first_scored_tap,       ///< the first tap that scores choose, of the acquisition or of a calling program
-  first_acquisition_tap,  ///< the first tap that the acquisition's scores choose
+  first_scored_tap,       ///< first tap that is chosen by scores, from the acquisition or a calling program
+  first_acquisition_tap,  ///< first tap that is chosen by the acquisition's scores
   first_fallback,
   summary,
 };
 
-/// The readers of a belief, fixed before the first tap.
+/// The readers of a belief: parts of the program that read its quantities. The plan is fixed before the first tap.
 struct ReadPlan {
   struct Reader {
     std::string name;  ///< such as "acquisition weighted"
     QuantitySet reads;
     Stage from = Stage::first_acquisition_tap;
-    bool at_one_candidate = false;  ///< by predict() alone
-    bool is_optional = false;       ///< a quantity that the belief does not offer is left out
+    bool at_one_candidate = false;  ///< whether it reads only by predict()
+    bool is_optional = false;       ///< whether to omit quantities that the belief does not offer
   };
   std::vector<Reader> readers;
-  /// From when on errors, expected RMSE and surface are read; nullopt: never.
+  /// Stage from which on errors, expected RMSE and surface are read; nullopt if they are never read.
   std::optional<Stage> surface_from = Stage::summary;
 
-  /// Returns what readers of these stages read in arrays.
+  /// Returns the quantities that the readers of these stages read as arrays.
   QuantitySet reads(const std::set<Stage>& begun) const {
     QuantitySet out;
     for (const Reader& one : readers) {
@@ -104,7 +104,7 @@ struct ReadPlan {
   }
 };
 
-/// A model of a run, such as "label GP", and a reader because of which it is built.
+/// A model that a run builds, such as "label GP", and a reader that needs this model.
 struct PlannedModel {
   std::string model;
   std::string reader;
@@ -112,21 +112,21 @@ struct PlannedModel {
 
 using BoolOut = Eigen::Ref<Eigen::Array<bool, Eigen::Dynamic, 1>>;
 
-/// Purpose of errors: the record of a tap, the summary, or displays beside the record.
+/// Purpose of errors: the record of a tap, the summary, or a display whose errors are not recorded.
 enum class ErrorsFor { tap, summary, display };
 
 /// Errors of a reconstruction. Without a known truth, they are absent.
 struct BeliefErrors {
   Errors errors;
-  std::vector<ObjectErrors> objects = {};              ///< of each object of the scene, in its order; for the summary
-  std::optional<double> expected_rmse = std::nullopt;  ///< metres; for displays
+  std::vector<ObjectErrors> objects = {};  ///< errors per object, in the order of the scene; only for the summary
+  std::optional<double> expected_rmse = std::nullopt;  ///< metres; only for displays
 };
 
-/// Expectation of a tap along a line by the particles of a belief, for explanations. Lengths in metres.
+/// Result of a tap along a line, as the particles of a belief predict it. Used for explanations. Lengths are in metres.
 struct LineFacts {
   struct Solid {
     std::string form;                 ///< such as "box"
-    Eigen::Vector3d extent{0, 0, 0};  ///< along its own axes
+    Eigen::Vector3d extent{0, 0, 0};  ///< lengths along its own axes
     double wall = 0.0;                ///< thickness of the wall; 0 without a hollow
   };
   struct Particle {
@@ -135,82 +135,85 @@ struct LineFacts {
     std::vector<Solid> solids;
   };
   std::vector<Particle> particles;  ///< the most probable one first; empty for beliefs without particles
-  /// Where the line meets an object of the most probable particle: standard deviation of the surface along its normal,
-  /// the same far from all contacts, and cosine between line and normal.
+  /// Values at the point where the line meets an object of the most probable particle: standard deviation of the
+  /// surface along its normal, this deviation far from all contacts, and cosine of the angle between line and normal.
   double surface_std = 0.0, prior_std = 0.0, incidence_cosine = 0.0;
 };
 
 /// Returns for each line whether the backend can tap along it.
 using LineFilter = std::function<void(const Candidates& lines, BoolOut out)>;
 
-/// A model of the scene. It learns from the results of taps, and offers the lines of the next tap and named quantities
-/// of them. A belief without models, stages or numerical trouble leaves the functions about them at their defaults.
+/// A model of the scene. It learns from the results of taps. It offers the lines along which the next tap may be made,
+/// and named quantities with one value per line. A simple belief without models, stages or numerical problems need not
+/// override the functions about them.
 ///
-/// Laws of every belief: the same plan, stages and taps give the same bytes, on any number of threads. infer(),
-/// surface(), errors() and all reading change no later value. Random numbers come from
-/// Context::random() alone. Numerical trouble is counted in state(). infer() throws Error for values that are not
+/// Laws of every belief: the same plan, stages and taps give the same bytes, on any number of threads. Calls of
+/// infer(), surface(), errors() and const functions do not change later results. Random numbers come only from
+/// Context::random(). state() returns the counts of numerical problems. infer() throws Error for values that are not
 /// finite.
 class Belief : public BeliefView {
  public:
   static constexpr const char* kKind = "belief";
 
-  /// Returns every quantity that the belief offers, the same from birth to death.
+  /// Returns all quantities that the belief offers; constant over the object's lifetime.
   virtual std::vector<Quantity> offers() const = 0;
 
-  /// Takes the readers of the run, before the first tap, and returns the models that those before the summary need. No
-  /// model without a reader is ever built. The belief offers every quantity of the plan.
+  /// Sets the readers of the run, before the first tap. Returns the models that the readers of all stages before the
+  /// summary need. A model without a reader is never built. The plan contains only quantities that the belief offers.
   virtual std::vector<PlannedModel> plan(const ReadPlan& /*plan*/) { return {}; }
 
-  /// The readers of `stage` read from now on; all that they read belongs to the record. Stages begin in any order; a
-  /// stage that has begun stays as it is.
+  /// Begins a stage: from now on its readers read, and the record contains the quantities that they read. Stages may
+  /// begin in any order. A second call for the same stage has no effect.
   virtual void begin(Stage /*stage*/) {}
 
-  /// Returns the reading of a result as the belief stands, nullopt for a failed tap. Changes nothing.
+  /// Returns the reading of a result by the belief in its present state; nullopt for a failed tap. Changes nothing.
   virtual std::optional<TapReading> read(const TapRequest& request, const TapResult& result) const = 0;
 
-  /// Takes the result of a tap. A failed tap is counted and teaches nothing. A second tap along one line is one more
-  /// datum.
+  /// Adds the result of a tap. A failed tap is counted, but not used as data. A second tap along the same line is an
+  /// additional datum.
   virtual void add(const TapRequest& request, const TapResult& result) = 0;
 
-  /// Brings the models of all begun stages up to the last tap, fits included.
+  /// Updates the models of all begun stages with the taps since the last call, including the fits that are due.
   virtual void update() {}
 
-  /// Computes the arrays that begun stages read, after update().
+  /// Computes the arrays that the readers of begun stages read. Requires update() after the last tap.
   virtual void infer() = 0;
 
-  /// Returns the quantities whose arrays begun stages have, among them those of models that other quantities needed.
+  /// Returns the quantities whose arrays are available in the begun stages. If a model is built for one quantity, its
+  /// other quantities are available, too.
   virtual QuantitySet available() const = 0;
 
-  /// Draws the lines of the next tap, unless they are fixed. `filter` says which of them the backend reaches.
+  /// Draws the lines for the next tap, unless the lines are fixed. `filter` returns which lines the backend can reach.
   virtual void draw_candidates(const LineFilter& /*filter*/) {}
 
-  /// Whether scores mean anything yet; until then the initial design goes on.
+  /// Returns whether scores are meaningful yet. Until then, the initial design chooses further taps.
   virtual bool is_ready() const { return true; }
-  /// Whether the belief reads the objects of Context::scene, as the view of a simulated camera does.
+  /// Returns whether the belief reads the objects of Context::scene. For example, a simulated camera view reads them.
   virtual bool reads_scene() const { return false; }
 
-  /// Returns height and, if `probability`, the object probability at a candidate. A reader at one candidate has
-  /// declared them.
+  /// Returns the height and, if `probability` is true, the object probability at a candidate. Requires a reader that
+  /// declares these quantities.
   virtual Prediction predict(Eigen::Index candidate, bool probability) const {
     Prediction out{values(quantity::kHeightMean)(candidate), values(quantity::kHeightStd)(candidate)};
     if (probability) out.probability = values(quantity::kObjectProbability)(candidate);
     return out;
   }
 
-  /// Returns the record of the models that readers of begun stages have: at a candidate for a tap, without one for the
-  /// summary.
+  /// Returns the fields that the models of begun stages add to the record: the record of a tap at `candidate`, or the
+  /// summary if `candidate` is nullopt.
   virtual BeliefState state(std::optional<Eigen::Index> /*candidate*/) const { return {}; }
 
-  /// Sets the true scene as it stands now; null if it is not known. It stays valid until the next call.
+  /// Sets the true scene in its current state; null if the truth is not known. `scene` stays valid until the next call.
   virtual void set_truth(const Scene* scene) = 0;
-  /// Returns the errors against the truth, for the record as far as begun stages read the arrays for them. For
-  /// displays, it uses all models that are built, returns nullopt if one is missing, and leaves the record as it is.
+  /// Returns the errors against the truth. For the record, an error is absent if no begun stage reads the arrays that
+  /// it needs. For displays, all models that are built are used, the record is not changed, and the result is nullopt
+  /// if a model is missing.
   virtual std::optional<BeliefErrors> errors(ErrorsFor purpose) = 0;
 
-  /// Returns the reconstructed surface; in the stage `summary`. The cells of a mesh are about `resolution` metres wide,
-  /// or wider if the mesh would be too large.
+  /// Returns the reconstructed surface. Requires that the stage ReadPlan::surface_from has begun. The cells of a mesh
+  /// are about `resolution` metres wide, or wider if the mesh would be too large.
   virtual Surface surface(double resolution) = 0;
-  /// Returns the expectation of a tap along a line.
+  /// Returns the predicted result of a tap along a line.
   virtual LineFacts explain(const TapLine& /*line*/) const { return {}; }
 };
 

@@ -26,23 +26,27 @@ struct Quantity {
 
 namespace quantity {
 
-// Offered by every shipped belief: M values.
+// Offered by every shipped belief, with one value per candidate.
 inline constexpr const char* kUncertainty = "uncertainty";         ///< variance relative to the prior, in [0, 1]
 inline constexpr const char* kMeasurementStd = "measurement_std";  ///< standard deviation of a tap's height, metres
 
-// Offered by the belief `height_map`: M values.
+// Offered by the belief `height_map`, with one value per candidate.
 inline constexpr const char* kLabelMean =
     "label_mean";  ///< w: mean of the label GP, clipped with `label: {clip: true}`
-inline constexpr const char* kObjectProbability = "object_probability";  ///< p: of an object, from the footprint
-inline constexpr const char* kHeightMean = "height_mean";                ///< mean of the surface, metres
-inline constexpr const char* kHeightStd = "height_std";                  ///< standard deviation of the surface, metres
-inline constexpr const char* kHypotheses = "hypotheses";                 ///< BeliefView::hypotheses()
+/// p: probability of an object, from the footprint.
+inline constexpr const char* kObjectProbability = "object_probability";
+inline constexpr const char* kHeightMean = "height_mean";      ///< mean of the surface, metres
+inline constexpr const char* kHeightStd = "height_std";        ///< standard deviation of the surface, metres
+inline constexpr const char* kHypotheses = "hypotheses";       ///< available by BeliefView::hypotheses()
 inline constexpr const char* kDeskPosition = "desk_position";  ///< the candidates are fixed positions on the desk
 
-// Offered by the belief `solids`: M values.
-inline constexpr const char* kExpectedDistance = "expected_distance";  ///< to the contact along the line, metres
-inline constexpr const char* kSurfaceStd = "surface_std";  ///< of the surface along its normal at the contact, metres
-inline constexpr const char* kIncidenceCosine = "incidence_cosine";      ///< cosine between line and normal, in [0, 1]
+// Offered by the belief `solids`, with one value per candidate.
+/// Distance along the line to the contact, metres.
+inline constexpr const char* kExpectedDistance = "expected_distance";
+/// Standard deviation of the surface at the contact, along the surface normal, metres.
+inline constexpr const char* kSurfaceStd = "surface_std";
+/// Cosine of the angle between line and surface normal, in [0, 1].
+inline constexpr const char* kIncidenceCosine = "incidence_cosine";
 inline constexpr const char* kExpectedDiscovery = "expected_discovery";  ///< see SolidsBelief
 inline constexpr const char* kStdReduction = "std_reduction";            ///< see SolidsBelief
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Effects that make simulated taps imperfect: `scene.effects` of a config. An effect that the config lacks is not
-// simulated. Only simulators read the effects; the belief from any side reads the radius of the tip.
+// simulated. Only simulators read the effects, except that the belief `solids` reads the radius of the tip.
 #pragma once
 
 #include <cstdint>
@@ -28,15 +28,15 @@ struct Stiffness {
   std::optional<double> arm;
 };
 
-/// Lag of the arm behind its set-point: `delay` seconds times the speed during a motion. After a sudden stop of the
-/// set-point, the arm overshoots by the share `overshoot` of the step.
+/// Lag of the arm behind its set-point: `delay` seconds times the speed during a motion. After a sudden step of the
+/// set-point, the arm overshoots by `overshoot` times the size of the step.
 struct JointLag {
   double delay = 0.35;
   double overshoot = 0.0;
 };
 
 /// Delay of the force signal, seconds. Each tap draws the absolute value of a normal number with this standard
-/// deviation. The tip descends meanwhile by the delay times its speed.
+/// deviation. During the delay, the tip descends further, by the delay times its speed.
 struct Latency {
   double deviation = 0.015;
 };
@@ -48,8 +48,8 @@ struct HeightOffset {
 };
 
 /// Things that are not part of the scene, such as a chip or a cable. The area is divided into squares of side `size`
-/// (metres), and a share of the squares has such a thing. The heights of these things are uniform up to `height`
-/// (metres), and the same at every tap.
+/// (metres), and each square has such a thing with `probability`. The heights of these things are uniform up to
+/// `height` (metres), and the same at every tap.
 struct ForeignObjects {
   double probability = 0.02;
   double height = 0.03;

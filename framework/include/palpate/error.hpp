@@ -19,7 +19,8 @@ class Error : public std::exception {
   enum class Kind {
     usage,  ///< wrong command line, config or plugin: exit 2
     run,    ///< the run itself failed: exit 1
-    busy,   ///< another process holds the run or its arm, or a program was changed; nothing has started: exit 75
+    /// Another process uses the run or its arm, or a program file of the run was changed. Nothing was started: exit 75.
+    busy,
   };
 
   Error(std::string where, std::string reason, std::string hint = {}, Kind kind = Kind::usage)

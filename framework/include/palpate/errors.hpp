@@ -12,7 +12,7 @@ struct Errors {
   std::optional<double> rmse_object = std::nullopt;    ///< metres, of the reconstructed heights over the true objects
   std::optional<double> rmse_height = std::nullopt;    ///< metres, of the mean height over the true objects
   std::optional<double> footprint_iou = std::nullopt;  ///< 1 if both footprints are empty
-  // Of closed surfaces.
+  // Errors of closed surfaces.
   std::optional<double> surface_distance = std::nullopt;      ///< metres, mean symmetric distance
   std::optional<double> rms_surface_distance = std::nullopt;  ///< metres, root mean square of the symmetric distances
   std::optional<double> f_score = std::nullopt;               ///< F-score at 5 mm
@@ -23,7 +23,7 @@ struct Errors {
   std::optional<double> overall() const { return rmse ? rmse : rms_surface_distance; }
 };
 
-/// All errors, for checks of all of them.
+/// All members of Errors, for loops over all errors.
 inline constexpr std::optional<double> Errors::*kErrors[]{
     &Errors::rmse,          &Errors::rmse_object,      &Errors::rmse_height,
     &Errors::footprint_iou, &Errors::surface_distance, &Errors::rms_surface_distance,
@@ -31,8 +31,10 @@ inline constexpr std::optional<double> Errors::*kErrors[]{
 
 /// Reconstruction of one object of the scene.
 struct ObjectErrors {
-  int cells = 0;        ///< candidates that are on the object and not on a higher one
-  bool merged = false;  ///< whether one component holds this and another object
+  int cells = 0;  ///< candidates that are on the object and not on a higher one
+  /// Whether one component of predicted cells contains at least a fifth of this object and of another one, although the
+  /// two true objects do not touch.
+  bool merged = false;
   bool split = false;
   /// Intersection over union of the object's cells with its predicted cells. These are its own predicted cells, and the
   /// predicted cells off all objects whose nearest object cell belongs to it. Absent if the object has no cell.

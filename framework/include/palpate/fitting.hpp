@@ -19,15 +19,15 @@ struct FitOutput {
 
 /// Data and hyperparameters of a fit. The model of output i is
 ///     targets_i ~ N(mean_i, signal_i^2 (k + mean_ratio^2 + noise_ratio^2 I)).
-/// So the outputs of a fit share the kernel, the ratio of noise to signal, and one factorisation.
+/// So the outputs of a fit share the kernel k, the ratio of noise to signal, and one factorisation.
 struct FitProblem {
   const PointsView points;  ///< n x 2, metres; n >= 1
   Kernel& kernel;           ///< its hyperparameters may be changed
-  double& noise_ratio;      ///< standard deviation of the noise of one tap, in signals
-  const double mean_ratio;  ///< standard deviation of the unknown constant that is added to the mean, in signals; >= 0
+  double& noise_ratio;      ///< standard deviation of the noise of one tap, divided by the signal
+  const double mean_ratio;  ///< standard deviation of an unknown constant added to the mean, over the signal; >= 0
   std::vector<FitOutput> outputs;  ///< one, or several that share their hyperparameters
-  /// Numbers that a fit of this GP leaves for its next fit; the framework does not read them. Empty before the first
-  /// fit; null if no other fit follows. A resumed run repeats all fits from the first on.
+  /// Numbers that a fit of this GP stores for the next fit of the same GP; the framework does not read them. Empty
+  /// before the first fit; null if no other fit follows. A resumed run repeats all fits, beginning with the first.
   std::vector<double>* memory = nullptr;
 };
 

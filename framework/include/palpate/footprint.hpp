@@ -11,10 +11,12 @@
 
 namespace palpate {
 
-/// A number about a footprint for the record. Four names are diagnostics of factorisations: "jitter" (present variance
-/// on the diagonal in addition to the noise), "jitter_raised" (increases of the jitter), "pivoted" (factorisations of
-/// independent rows only) and "redundant_taps" (touches that are left out at present). The framework adds them to the
-/// diagnostics of the Gaussian processes.
+/// A number about a footprint for the record. Four names are diagnostics of factorisations:
+///     "jitter"          variance that is currently added to the diagonal besides the noise
+///     "jitter_raised"   number of increases of the jitter
+///     "pivoted"         number of factorisations of independent rows only
+///     "redundant_taps"  number of touches that are currently left out
+/// The framework adds these four numbers to the diagnostics of the Gaussian processes.
 struct FootprintNumber {
   std::string name;  ///< such as "label_errors", or one of the four names above
   double value = 0.0;
@@ -31,31 +33,33 @@ class Footprint {
 
   virtual ~Footprint() = default;
 
-  /// Returns whether the probability is the mean of the label GP, clipped to [0, 1]. The framework has this mean, and
-  /// then calls none of the methods below.
+  /// Returns whether the probability is the mean of the label GP, clipped to [0, 1]. If so, the framework uses this
+  /// mean itself and calls none of the methods below.
   virtual bool is_weight() const { return false; }
 
   /// Adds the next touch. Never throws for numerical reasons.
   virtual void add(const Touch& touch) = 0;
 
-  /// Computes the probability of an object at each of `places`, M x 2 metres: M values in [0, 1]. A footprint may cache
-  /// data about the places for the next call.
+  /// Computes the probability of an object at each of the positions `places` (M x 2, metres): M values in [0, 1]. A
+  /// footprint may cache data about the positions for the next call.
   virtual void probability(const PointsView& places, VectorOut out) = 0;
 
-  /// Samples outlines from the posterior, at `places`, M x 2 metres. The samples lack objects without a contact that
-  /// overlap no known object. Leaves `out` empty if the footprint has no samples.
+  /// Samples hypotheses of the outlines from the posterior, at the positions `places` (M x 2, metres). An object that
+  /// no tap has touched is part of a sample only if it overlaps a known object. Leaves `out` empty if the footprint has
+  /// no samples.
   virtual void sample(const PointsView& /*places*/, HypothesisSample& out) const { out = {}; }
 
-  /// Computes the probability of a wrong label for each touch so far, in [0, 1], in their order. 0 for a footprint
-  /// without a model of label errors.
+  /// Computes for each touch so far, in the order of the touches, the probability in [0, 1] that its label is wrong.
+  /// All values are 0 for a footprint without a model of label errors.
   virtual void doubt(VectorOut out) const { out.setZero(); }
 
-  /// Changes the positions of the touches so far, one row per touch in their order, metres, to their present positions.
-  /// A footprint that models pushes moves touches with the object that was pushed afterwards.
+  /// Sets `places` to the present positions of the touches: one row per touch, in the order of the touches, metres. On
+  /// entry, `places` contains the original positions. If an object was pushed after a touch, a footprint that models
+  /// pushes moves the touch with the object.
   virtual void current_positions(Points& /*places*/) const {}
 
-  /// Returns the probability of an object of 3 cm or more without a touch; nullopt without a model of such objects. A
-  /// stopping rule waits until it is small.
+  /// Returns the probability that there is an object of 3 cm or more that no tap has touched; nullopt without a model
+  /// of such objects. The stop rule `expected_rmse` requires a small probability.
   virtual std::optional<double> undiscovered_probability() const { return std::nullopt; }
 
   /// Returns numbers for the record, with the same names after every touch.

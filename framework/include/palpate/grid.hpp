@@ -17,8 +17,8 @@ constexpr int kMaxCellsPerSide = 2000;
 
 /// Returns lines straight down at the centres of a grid of cells over the area, row by row: x increases with the
 /// column, y with the row. The lines begin above every object and end below the desk, whose height is `desk` (metres);
-/// the arm may join them at any height. `run` sets number or size of the cells; otherwise there are `usual_count` per
-/// side. Throws Error for more than kMaxCellsPerSide.
+/// the arm may join them at any height. `run` sets the number or the size of the cells; by default, there are
+/// `usual_count` cells per side. Throws Error for more than kMaxCellsPerSide.
 inline Candidates grid_from_above(const Area& area, double desk, const RunSettings& run, int usual_count = 47) {
   constexpr double kTop = 0.5;      // metres above the desk
   constexpr double kBeneath = 0.1;  // metres below the desk
@@ -48,7 +48,7 @@ inline Candidates grid_from_above(const Area& area, double desk, const RunSettin
   return out;
 }
 
-/// Returns this grid over the area of a scene, as the config sets it.
+/// Returns such a grid for the area, the desk and the cells that the config sets.
 inline Candidates grid_from_above(const Context& context, int usual_count = 47) {
   return grid_from_above(context.scene.area(), context.scene.desk(), context.run, usual_count);
 }

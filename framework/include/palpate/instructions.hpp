@@ -14,9 +14,9 @@ enum class Instructions {
   avx512,
 };
 
-/// Returns the set in use: the set of use_instructions(), or without it the widest set of this processor.
+/// Returns the set in use: the set that use_instructions() selected last, or else the widest set of this processor.
 Instructions instructions_in_use();
-/// Sets the set in use. This processor must have it.
+/// Selects the set in use. This processor must support it.
 void use_instructions(Instructions set);
 
 }  // namespace palpate

@@ -14,7 +14,7 @@ namespace palpate {
 struct KernelParameter {
   std::string name;  ///< name of its option, with dots if kernels are nested: "kernels.0.length_scale"
   double value;      ///< SI, positive
-  /// `metre` for a distance over the area; fits scale their expectations by the size of the area.
+  /// `metre` for a distance on the desk. For such a parameter, the priors of a fit scale with the size of the area.
   Unit unit = Unit::none;
 };
 
@@ -41,8 +41,8 @@ class Kernel {
   /// over G x G candidates needs 2 G values of such a kernel per tap, instead of G^2.
   virtual bool separable() const { return false; }
 
-  /// Computes a factor f_axis(a_i, b_j) for coordinates along x (axis 0) or y (axis 1): `a` n, `b` m, `out` n x m.
-  /// Their product equals covariance() within 8 + |log k| ulp. Never throws.
+  /// Computes a factor f_axis(a_i, b_j) for coordinates along x (axis 0) or y (axis 1): `a` n, `b` m, `out` n x m. The
+  /// product of both factors equals covariance() within 8 + |log k| ulp. Never throws.
   virtual void axis_covariance(int axis, const VectorView& a, const VectorView& b, MatrixOut out) const;
 
   /// Returns the hyperparameters in the order of the options.
@@ -64,9 +64,10 @@ class Kernel {
   /// of the GP have gradients, and gradient_covariance() is implemented, too. Beliefs that use surface normals need it.
   virtual bool has_gradient() const { return false; }
 
-  /// Computes covariances of the gradient at two positions at a distance r: `along` of the components along their line,
-  /// -f''(r), `across` of the components at right angles to it, -f'(r) / r. At r = 0 both are -f''(0). All have n
-  /// values; `distances` are not negative. Finite for all finite distances. Never throws.
+  /// Computes covariances between the gradients at two positions with the distance r. `along` is the covariance of the
+  /// components parallel to the line between the positions, -f''(r). `across` is the covariance of the components
+  /// perpendicular to that line, -f'(r) / r. At r = 0 both are -f''(0). All arguments have n values; `distances` are
+  /// not negative. Finite for all finite distances. Never throws.
   virtual void gradient_covariance(const VectorView& distances, VectorOut across, VectorOut along) const;
 };
 

@@ -21,12 +21,14 @@ double log(double x);
 double log1p(double x);
 /// x^y for x >= 0, 1 ulp. NaN for x < 0.
 double pow(double x, double y);
-/// x in radians, 0.8 ulp up to 10^6. The error grows in proportion to x beyond; NaN above 10^9.
+/// Sine and cosine of x in radians, 0.8 ulp for |x| up to 10^6. Above, the error grows in proportion to |x|; NaN for
+/// |x| above 10^9.
 double sin(double x);
 double cos(double x);
-/// Angle of (x, y) from the x axis in [-pi, pi], with the sign of y, 1.8 ulp. 0 for (0, 0). x has to be finite.
+/// Angle of the point (x, y) from the x axis in [-pi, pi], with the sign of y, 1.8 ulp. 0 for (0, 0). x has to be
+/// finite.
 double atan2(double y, double x);
-/// Results in [-pi / 2, pi / 2] and [0, pi], 2.6 ulp. NaN for x outside of [-1, 1].
+/// Arcsine in [-pi / 2, pi / 2] and arccosine in [0, pi], 2.6 ulp. NaN for x outside of [-1, 1].
 double asin(double x);
 double acos(double x);
 /// 2 / sqrt(pi) times the integral of e^(-t^2) from x to infinity, 8 ulp; 0 above 27.3.
@@ -34,12 +36,13 @@ double erfc(double x);
 
 /// log2 x, 1.7 ulp.
 inline double log2(double x) { return log(x) * 1.44269504088896340736; }
-/// sqrt(x^2 + y^2), 1 ulp, for lengths whose squares are doubles.
+/// sqrt(x^2 + y^2), 1 ulp, if the squares neither overflow nor underflow.
 inline double hypot(double x, double y) { return std::sqrt(x * x + y * y); }
 
-/// Computes out_i = e^(x_i) for `count` numbers, with the widest vectors of the processor that PALPATE_INSTRUCTIONS
-/// allows. 1.2 ulp up to 709, 40 ulp above. Never below e^-708 = 3.3e-308; infinity above 709.8. `out` may be `x`. The
-/// bytes are the same on every processor with fused multiplication and addition (x86 from 2013 on, all 64-bit ARM).
+/// Computes out_i = e^(x_i) for `count` numbers, with the vectors of the instruction set in use
+/// (palpate/instructions.hpp). The error is at most 1.2 ulp for x up to 709, and 40 ulp above. Results are never below
+/// e^-708 = 3.3e-308; infinity for x above 709.8. `out` may be `x`. The bytes are the same on every processor with
+/// fused multiplication and addition (x86 from 2013 on, all 64-bit ARM).
 void exp(const double* x, std::ptrdiff_t count, double* out);
 
 }  // namespace palpate::math

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Motions of a backend's taps, with their durations and accuracies, without the backend itself. So a replayed or
-// explained run has the same motions without a robot.
+// The motions that a backend can choose for a tap, with their durations and accuracies. Motions are separate from the
+// backend, so a run can be replayed or explained without a robot.
 #pragma once
 
 #include <palpate/backend.hpp>
@@ -11,8 +11,8 @@ namespace palpate {
 ///
 ///     static std::unique_ptr<Motions> motions(const Options& options, const Scene& scene);
 ///
-/// which returns null if the options allow only one motion. Otherwise the strategy chooses a motion for each tap, in
-/// TapRequest::motion, by information and time. Law: all are pure functions of their arguments.
+/// which returns null if the options allow only one motion. Otherwise the framework chooses the motion of each tap
+/// (TapRequest::motion), with the most information per second. Law: all methods are pure functions of their arguments.
 class Motions {
  public:
   virtual ~Motions() = default;
@@ -24,7 +24,8 @@ class Motions {
   /// of the scene. Called for every candidate before every tap, so it should take microseconds.
   virtual double seconds(const TapRequest& request, double surface) const = 0;
 
-  /// Returns the prior standard deviation, metres, of a height by a motion. Taps on the desk correct it.
+  /// Returns the expected standard deviation, metres, of a height that is measured with a motion. Taps on the desk
+  /// correct this value during the run.
   virtual double deviation(int motion) const = 0;
 };
 

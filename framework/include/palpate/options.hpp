@@ -37,8 +37,8 @@ enum class Unit { none, metre, second, newton, radian, metre_per_second, newton_
 struct Options {
   virtual ~Options() = default;
 
-  /// Lists every field once, in the order for users. Each call must list the same fields, except that the value of a
-  /// choice may decide the fields after it.
+  /// Lists every field once, in the order in which users see the fields. Each call must list the same fields, except
+  /// that the value of a choice may decide the fields after it.
   virtual void list(Fields& fields) = 0;
 };
 
@@ -55,10 +55,10 @@ struct PluginChoice {
   std::shared_ptr<const Tree> options;  ///< options, checked and complete
 };
 
-/// Absent value of an optional field, or of a list without items.
+/// Marks the value of an absent optional field, or of an empty list.
 struct NoValue {};
 
-/// A value in code: a real number in SI units, or the name of a choice.
+/// A constant value of a field, for example a real number in SI units or the name of a case.
 struct FixedValue {
   enum class Kind { none, absent, real, integer, flag, text };
   FixedValue() = default;
@@ -104,23 +104,26 @@ class Field {
   /// Set the owner. Every top-level key of a config needs an owner.
   Field& of_strategy() { return owner = Owner::strategy, *this; }
   Field& of_run() { return owner = Owner::run, *this; }
-  /// Moves a plugin's group of options with this name out of the plugin's block, to a group next to it. The group
-  /// belongs to the run; a strategy may give its default.
+  /// For a plugin field: moves the plugin's option group with the name `option` out of the plugin's block, to a key of
+  /// its own on the same level. Example: the options `motion` of a backend are at the key `motion`, not
+  /// `backend.motion`. The group belongs to the run; a strategy may set its default.
   Field& with_beside(const char* option) { return beside = option, *this; }
 
   /// Sets the neutral value, with which a run is the same as before the option existed. An option with this value does
-  /// not enter the id, and a record without the option is read with it. Every option that is added after version 0.1.0
-  /// has a neutral value, which never changes. Plugins that are added are optional, and absence is neutral.
+  /// not enter the id, and a record without the option is read as if it had this value. Every option that is added
+  /// after version 0.1.0 has a neutral value, which never changes. A plugin field that is added later is optional, and
+  /// its absence is neutral.
   Field& neutral(const FixedValue& value) { return neutral_value = value, *this; }
   /// Keeps the field and its nested fields out of the id, because they change no result of a run.
   Field& not_identifying() { return enters_id = false, *this; }
   /// Makes the text a file name. A relative name is searched in the working folder, then in the folder of the config
   /// that sets it, then in the folders above.
   Field& names_file() { return is_file = true, *this; }
-  /// Sets the former name, of a version from 0.1.0 on. The option enters ids with this name, and records may have it.
+  /// Sets the former name, which the option had in version 0.1.0 or later. The option enters ids under its former name,
+  /// and records may contain this name.
   Field& was(const char* key) { return former_name = key, *this; }
 
-  /// Allows `{draw: {least, most, of}}` instead of the list: items that are drawn from the seed.
+  /// Allows `{draw: {least, most, of}}` instead of the list: the items are then drawn at random, depending on the seed.
   Field& drawable() { return is_drawable = true, *this; }
 
   const char* name;
@@ -142,7 +145,7 @@ class Field {
   const char* beside = "";
 };
 
-/// A named value of a choice. A choice with the key `type` may have fields per value.
+/// A named value of a choice. A choice with the key `type` may have additional fields for each value.
 struct Case {
   const char* name;
   const char* meaning;
@@ -190,11 +193,13 @@ class Fields {
   virtual void plugin(std::optional<PluginChoice>& choice, const char* kind, const Field& field) = 0;
   /// Visits a list of plugins of one kind.
   virtual void plugins(std::vector<PluginChoice>& choices, const char* kind, const Field& field) = 0;
-  /// Visits another plugin whose options are among the present fields, not in their own group. The required `field` has
-  /// its name. Throws Error if one of its options has the name of a present field.
+  /// Visits another plugin whose options are listed among the present fields, not in a group of their own. `field` is
+  /// required, and its value is the name of the plugin. Throws Error if an option of the plugin has the name of a
+  /// present field.
   virtual void adopt(PluginChoice& choice, const Field& field) = 0;
-  /// Declares an option that versions from 0.1.0 on had, with the default `last`. The value enters the id as before,
-  /// and a record may have it. Other values are errors, with the remedy `field.meaning`.
+  /// Declares a removed option of version 0.1.0 or later, whose last default was `last`. The value `last` still enters
+  /// the id, and a record may contain the option with this value. Other values are errors, with `field.meaning` as the
+  /// hint.
   virtual void retired(const Field& /*field*/, const FixedValue& /*last*/) {}
   /// Checks a condition between fields. If `holds` is false, reading fails with `reason` at the position of `field`,
   /// which may be a dotted path to a nested field.

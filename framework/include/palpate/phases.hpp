@@ -15,7 +15,7 @@ constexpr std::array<const char*, kPhases> kPhaseNames{"robot", "fit", "infer", 
 /// Seconds of wall time by phase. Phases nest: the time of an inner phase does not count for the outer one.
 class PhaseClock {
  public:
-  /// Adds the time from its construction to its destruction to `phase`.
+  /// Adds the time between its construction and its destruction to `phase`.
   class Scope {
    public:
     /// Does nothing if `clock` is null.

@@ -48,8 +48,8 @@ class PluginFactory {
 struct RunSettings {
   PluginChoice kernel{"kernel", {}, nullptr};         ///< kernel for a GP that sets none itself
   PluginChoice fitting{"fitting", "fixed", nullptr};  ///< fitting for a GP that sets none itself
-  /// Number of candidates, per side for a grid, or side length of a grid cell, metres. Without both, the belief has its
-  /// own default.
+  /// Number of candidates (for a grid, cells per side), or side length of a grid cell in metres (`spacing`). If both
+  /// are absent, the belief uses its own default.
   std::optional<std::int64_t> candidates;
   std::optional<double> spacing;
   std::int64_t taps = 1;        ///< budget
@@ -65,7 +65,7 @@ struct Context {
   /// Folder of the run's record, for files of a plugin; empty without a record. The folder exists from the first tap
   /// on.
   std::string directory = {};
-  Instructions instructions = instructions_in_use();  ///< set for the loops of palpate/math.hpp
+  Instructions instructions = instructions_in_use();  ///< instruction set for the loops of palpate/math.hpp
   PhaseClock* clock = nullptr;                        ///< clock of the run, for fits and inference; may be null
   RunSettings run = {};                               ///< settings for beliefs
   bool from_above = true;                             ///< whether the belief taps straight down only, for backends
@@ -93,7 +93,7 @@ struct PluginManifest {
   const char* name;     ///< file name without .so
   const char* summary;  ///< one line, for `palpate plugins`
   bool one_at_a_time;   ///< whether only one run at a time may use it (Backend::kOneAtATime)
-  /// Lists the fields of a default options struct to `fields`.
+  /// Lists the fields of an options struct with default values to `fields`.
   void (*describe)(Fields& fields);
   /// Reads an options struct from `fields` and creates the object. Returns a pointer to the kind's interface.
   void* (*create)(Fields& fields, const Context& context);
@@ -136,7 +136,7 @@ void* create(Fields& fields, const Context& context) {
   return static_cast<Interface*>(new Plugin(options, context));
 }
 
-/// True if `Plugin` has kOneAtATime, which only backends have, and it is true.
+/// True if `Plugin` defines kOneAtATime, as only backends do, with the value true.
 template <class Plugin, class = void>
 struct OneAtATime : std::false_type {};
 template <class Plugin>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Random numbers without global state. A seed, a purpose and a number name each stream. So users of random numbers do
-// not affect each other, and a resumed run draws the same numbers as an uninterrupted run.
+// Random numbers without global state. A seed, a purpose and a number identify each stream. So parts of the program
+// that draw random numbers do not affect each other, and a resumed run draws the same numbers as an uninterrupted run.
 #pragma once
 
 #include <cstdint>

@@ -23,12 +23,12 @@ struct JsonList {
 /// null, truth value, whole number, real number, text or list.
 using Scalar = std::variant<std::monostate, bool, std::int64_t, double, std::string, JsonList>;
 
-/// Values by dotted names ("height_gp.jitter"), in the order of the record.
+/// Values with dotted names such as "height_gp.jitter", in the order of the record.
 using RecordFields = std::vector<std::pair<std::string, Scalar>>;
 
 /// The state of a belief, for one row of the record.
 struct BeliefState {
-  /// Fields of the record. Fields with a dot in their name, such as "my_belief.radius", may be a belief's own.
+  /// Fields of the record. A belief may add fields of its own, with a dot in their names, such as "my_belief.radius".
   RecordFields fields;
   /// Number of numerical problems so far, by kind: "fit_failed", "jitter", "pivoted", "redundant_taps",
   /// "variance_clamped".

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The scene of a config. Simulators tap it, and errors are differences from it. The backend of a robot reads only its
-// area and its desk.
+// The scene of a config. Simulators tap this scene, and errors of a reconstruction are computed against it. The backend
+// of a robot reads only the area and the desk.
 #pragma once
 
 #include <palpate/effects.hpp>
@@ -37,7 +37,7 @@ class Scene {
   virtual double min_object_height() const = 0;
 
   /// Returns the distance of the first intersection of the line with an object, metres from the line's origin, negative
-  /// behind it; +infinity without one. The desk does not count. z is in the frame of the heights.
+  /// behind the origin; +infinity without an intersection. The desk does not count. z is in the frame of the heights.
   virtual double first_intersection(const Line& line) const = 0;
 
   /// Returns the intervals of the line inside of objects, in ascending order. Hollow space does not count. See

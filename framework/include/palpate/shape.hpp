@@ -11,7 +11,7 @@
 
 namespace palpate {
 
-/// Interval of a line: two distances from its origin, metres.
+/// Interval on a line: distances of its two ends from the line's origin, metres.
 struct Stretch {
   double begin = 0.0;
   double end = 0.0;
@@ -45,8 +45,8 @@ class Shape {
 
   /// Returns the smallest distance from the line's origin at which the line meets the solid, negative behind the
   /// origin; +infinity without an intersection. With taps from above, lines point down; else they have any direction.
-  /// Laws: a step of the origin along the line reduces the result by this step; no intersection is outside of
-  /// support().
+  /// Laws: if the origin moves forward along the line, the result decreases by the length of the move. All
+  /// intersections are within the bounds of support().
   virtual double first_intersection(const Line& line) const = 0;
 
   /// Returns the largest scalar product of a point of the solid with `direction`, the extent of the solid. `direction`
@@ -54,14 +54,15 @@ class Shape {
   /// along {1, 0, 0} and {-1, 0, 0}, and along {0, 1, 0} and {0, -1, 0}.
   virtual double support(const Eigen::Vector3d& direction) const = 0;
 
-  /// Returns the height of the upright solid at (s, t) of its own frame; -infinity outside its outline. Law: equal to
-  /// the result of first_intersection() with the vertical line. Overridden if a faster computation exists.
+  /// Returns the height of the upright solid at (s, t) of its own frame; -infinity outside its outline. Law: the height
+  /// is minus the result of first_intersection() for the line downwards from (s, t, 0). Overridden if a faster
+  /// computation exists.
   virtual double top(double s, double t) const { return -first_intersection({{s, t, 0.0}, {0.0, 0.0, -1.0}}); }
 
   /// Returns the intervals of the line inside of the solid, in ascending order; hollow space does not count. This
   /// default is correct for convex solids; other shapes override it. Used only to compare volumes and to draw sections.
-  /// Laws: the first interval begins at first_intersection(), the last ends at the first intersection of the reversed
-  /// line; whether a point is inside does not depend on the line through it.
+  /// Laws: the first interval begins at first_intersection(), and the last interval ends where the reversed line first
+  /// meets the solid; whether a point is inside does not depend on the line through it.
   virtual std::vector<Stretch> intervals(const Line& line) const {
     const double begin = first_intersection(line);
     const double end = -first_intersection({line.origin, -line.direction});

@@ -24,7 +24,7 @@ struct Surface {
   /// The mesh: triangles of vertices, counter-clockwise seen from outside.
   std::vector<Vertex> vertices;
   std::vector<std::array<int, 3>> triangles;
-  double resolution = 0.0;  ///< length of the cubes that the mesh was made from
+  double resolution = 0.0;  ///< edge length of the cubes from which the mesh was made
 };
 
 }  // namespace palpate

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // One tap: the line of the tool, the request to the backend, and the result. SI units, in the frame of the scene: x and
-// y from the lower left corner of the area, heights as Scene::desk().
+// y from the lower left corner of the area, heights with the same zero as Scene::desk().
 #pragma once
 
 #include <palpate/types.hpp>
@@ -14,12 +14,14 @@
 
 namespace palpate {
 
-/// The path of the tool: from `start` at most `length` metres along `direction`, the shaft straight behind the tip.
+/// The path of the tip of the tool: from `start`, at most `length` metres along `direction`. The shaft is parallel to
+/// the path, behind the tip.
 struct TapLine {
   Eigen::Vector3d start{0.0, 0.0, 0.0};
   Eigen::Vector3d direction{0.0, 0.0, -1.0};  ///< unit vector
   double length = 0.0;
-  /// Straight down, with nothing above the surface: the arm may join the line at any height above its expected end.
+  /// Whether the line points straight down to the topmost surface. The arm may then enter the line at any height above
+  /// the expected contact.
   bool from_above = false;
 
   Eigen::Vector3d at(double distance) const { return start + distance * direction; }
@@ -37,15 +39,15 @@ inline TapLine line_from_above(const Target& target, double top = 0.0, double le
 enum class Source { initial, acquisition, fallback, caller };
 
 /// Prediction of the models at the end of a line: mean and standard deviation of the height, metres. With `surface:
-/// two_part` it is the height that an object would have there.
+/// two_part`, the height is that of an object, even if there is probably no object.
 struct Prediction {
   double height = 0.0;
   double standard_deviation = 0.0;
   std::optional<double> probability = std::nullopt;  ///< probability of an object, for a backend that reads it
 };
 
-/// Request for one tap. It contains everything that a simulated result may depend on besides options and seed, so that
-/// a resumed run continues exactly like an uninterrupted one.
+/// Request for one tap. The result of a simulated tap depends only on the request, the options and the seed, so a
+/// resumed run continues exactly like an uninterrupted run.
 struct TapRequest {
   int number = 1;  ///< number of the tap within the run, from 1
   TapLine line;
@@ -72,7 +74,8 @@ enum class Outcome {
 struct TapResult {
   Outcome outcome = Outcome::unknown;
   /// Distance that the tool moved along the line until it touched something or stopped, metres, in [0, length]. May be
-  /// absent on lines from above, and after `no_contact`, which then means the whole length.
+  /// absent on lines from above and after `no_contact`; if it is absent after `no_contact`, the tool moved the whole
+  /// length.
   std::optional<double> distance = std::nullopt;
   std::optional<Eigen::Vector3d> contact = std::nullopt;  ///< the touched point, metres; only for `contact`
   double force = 0.0;                                     ///< force at contact, newtons; only for `contact`
@@ -116,9 +119,9 @@ struct TapReading {
   bool is_contact = true;
   bool on_object = false;     ///< a contact with an object, not with the desk
   bool is_corrected = false;  ///< the position is corrected for the offset of the arm
-  bool moved = false;         ///< an object was pushed later, so that the reading no longer holds at its position
+  bool moved = false;         ///< the object was pushed later, so the reading is no longer valid at this position
   double outlier_probability = 0.0;      ///< probability that the height or the label is wrong
-  double wrong_label_probability = 0.0;  ///< the part of it due to the label
+  double wrong_label_probability = 0.0;  ///< probability that the label is wrong; part of `outlier_probability`
 };
 
 }  // namespace palpate

@@ -46,13 +46,14 @@ struct Touch {
   bool on = false;      ///< on an object, by the scene's rule (`min_object_height`)
 };
 
-/// Hypotheses of the footprint, sampled from the posterior, with the candidates on an object in each. They show which
-/// candidates are on the same object, which M probabilities do not show.
+/// Hypotheses of the footprint, sampled from the posterior. Each hypothesis is the set of the candidates that are on an
+/// object. Hypotheses show which candidates are on an object together, which M separate probabilities do not show.
 struct HypothesisSample {
   int count = 0;  ///< a multiple of 64; 0 without hypotheses
-  /// count / 64 x M: bit k % 64 of row k / 64 says whether hypothesis k has an object at a candidate.
+  /// Matrix of count / 64 rows and M columns: bit k % 64 of row k / 64 is set if hypothesis k has an object at the
+  /// candidate.
   Eigen::Matrix<std::uint64_t, Eigen::Dynamic, Eigen::Dynamic> holds;
-  /// M values, square metres: expected area of the undiscovered objects that a tap would find.
+  /// M values, square metres: expected area of the undiscovered objects that a tap at the candidate would find.
   Eigen::VectorXd expected_discovery_area;
 };
 

@@ -33,7 +33,7 @@ __all__ = ["Belief", "Error", "Experiment", "InputError", "Maps", "Run", "Sweep"
 __version__ = _palpate.version
 
 for _one in (Belief, Experiment, Maps, Run, Sweep):
-    _one.__module__ = __name__  # help() and pickle show the public name
+    _one.__module__ = __name__  # help() and pickle then use the public module name
 
 _atexit.register(_palpate.end_calls)  # at exit, Python waits for calls in other threads
 
@@ -106,7 +106,8 @@ def begin_sweep(config, *axes, labels=None, runs="runs", **settings) -> Sweep:
         names = [labels] if isinstance(labels, str) else list(labels)
         if not names or not all(isinstance(one, str) and one for one in names):
             raise _error("labels", "has a value that is not a name", "give non-empty texts")
-        # A YAML list of texts in single quotes, because no other character is special in such texts.
+        # The labels become a YAML list of texts in single quotes. In such a text, only the single quote itself is
+        # special.
         texts = ("'" + one.replace("'", "''") + "'" for one in names)
         words += [f"backend.label=[{', '.join(texts)}]"]
     return Sweep(_palpate.begin_sweep(_os.fspath(config), words, _os.fspath(runs)))

@@ -36,7 +36,7 @@ def value_text(value):
 
 def values_text(value):
     """Returns the values of a swept key, separated by commas. A value that is not a list stands alone."""
-    if isinstance(value, range) and len(value) > 10**6:  # the program rejects a range this long with its own message
+    if isinstance(value, range) and len(value) > 10**6:  # the program rejects such a long range with its own message
         return f"range({value.start},{value.stop},{value.step})"
     if isinstance(value, np.ndarray):
         value = value.tolist()
@@ -49,7 +49,7 @@ def override_texts(overrides, settings):
 
 def conduct(command, progress):
     """Runs a sweep and returns its exit status and its last line. The sweep ends with this process. Calls progress(done, jobs)."""
-    # The child has a separate session. Otherwise, Ctrl-C in a terminal would reach the child twice.
+    # The child process has a separate session. Otherwise, Ctrl-C in a terminal would reach it twice.
     child = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE,
                              start_new_session=True, env={**os.environ, "PALPATE_PARENT": str(os.getpid())})
     said, told, interrupted = b"", None, None

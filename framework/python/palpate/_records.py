@@ -206,7 +206,7 @@ class Sweep:
         return self._record.size()
 
     def __getitem__(self, job: int) -> Run:
-        index = range(len(self))[job]  # -1 stands for the last job, as in lists
+        index = range(len(self))[job]  # as in lists, -1 means the last job
         return Run(self._record.job(index))
 
     def __iter__(self):

@@ -25,7 +25,7 @@ namespace fs = std::filesystem;
 constexpr std::size_t kMostScenes = 12;
 constexpr std::size_t kMostCurves = 16;  ///< largest number of curves per panel
 
-// Lengths in points of print.
+// Lengths in points (1/72 inch).
 constexpr double kAxisRoom = 40;         ///< width left of the first panel, for numbers and title of the axis
 constexpr double kPanelGap = 14;         ///< width between panels; only the first panel of a row has numbers
 constexpr double kNumbersRoom = 14;      ///< height below a panel, for numbers
@@ -41,7 +41,8 @@ std::vector<std::string> group_names(const GroupCurves& curves) {
   return out;
 }
 
-/// Returns the interval to draw at a point. Equal values have no interval; the band then has the width 0, at the mean.
+/// Returns the interval to draw at a point. If all values are equal, there is no interval, and the band shrinks to the
+/// mean.
 std::optional<MeanInterval> drawn_interval(const MeanEstimate& mean) {
   if (mean.interval || mean.count == 0 || mean.clusters < kLeastForInterval) return mean.interval;
   return MeanInterval{mean.mean, mean.mean};
@@ -70,9 +71,9 @@ struct AxisRange {
   }
 };
 
-/// Returns the range of the values of all curves, the same for all panels. The range covers the means and only a part
-/// of wide intervals, because intervals of the first taps may be very wide. It excludes negative values if no mean is
-/// negative.
+/// Returns the range of the values of all curves, the same for all panels. The range covers all means, but only a part
+/// of wide intervals, because intervals after the first taps may be very wide. If no mean is negative, the range has no
+/// negative values.
 AxisRange value_range(const std::vector<const GroupCurve*>& curves, double factor) {
   std::vector<double> means;
   std::vector<double> ends;
@@ -93,7 +94,7 @@ AxisRange value_range(const std::vector<const GroupCurve*>& curves, double facto
   return {*low >= 0.0 ? std::max(below, 0.0) : below, std::min(*most, *high + room)};
 }
 
-/// Returns lines "at mean low high" of the points in the units of the axes; NaN for no value.
+/// Returns one line "at mean low high" per point, in the units of the axes; NaN for a missing value.
 std::string block_of(const GroupCurve& curve, double axis, double factor) {
   std::string out;
   const auto number = [&](double value) { return fmt::format("{:.6g}", value / factor); };
@@ -105,14 +106,14 @@ std::string block_of(const GroupCurve& curve, double axis, double factor) {
   return out;
 }
 
-/// Returns the lines of a panel's title, such as "scene: ring". Leaves out the keys if they do not fit.
+/// Returns the lines of a panel's title, such as "scene: ring". Leaves out the names of the keys if they do not fit.
 std::vector<std::string> panel_title(const GroupCurves& curves, const std::string& scene, double width) {
   if (scene.empty()) return {};
   const std::string whole = fmt::format("{}: {}", fmt::join(curves.scenes, ", "), scene);
   return lines_within(width_of_line(whole) <= width ? whole : scene, width);
 }
 
-/// Returns the text for a caption as comments of the script.
+/// Returns comments for the script: title and text of a caption.
 std::string caption_of(const GroupCurves& curves, const std::string& title) {
   const std::string better = curves.metric.better_words();
   return fmt::format(
@@ -174,9 +175,8 @@ PanelGrid grid_of(const GroupCurves& curves, const std::string& y_title, double 
   if (more_scenes > 0) out.left_out += fmt::format("{}{} more scenes", more_groups > 0 ? " and " : "", more_scenes);
   if (!out.left_out.empty()) out.left_out += " are not drawn: the CSV has them";
 
-  // Distributes the panels evenly over the rows. The title of the axis is left of all rows. It has several lines if the
-  // rows are short.
-  // width of all panels of a row, each with the gap after it
+  // The panels are distributed evenly over the rows. The title of the y axis is to the left of all rows. It has several
+  // lines if the rows are short. `pairs` is the width of all panels of a row, each with the gap after it.
   const double pairs = width - kAxisRoom - kEndRoom + kPanelGap;
   const std::size_t most = std::max<std::size_t>(1, static_cast<std::size_t>(pairs / (kLeastPanelWidth + kPanelGap)));
   const std::size_t down = (out.scenes.size() + most - 1) / most;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The legend of a figure with curves, and the widths of its texts. All lengths are points in print.
+// The legend of a figure with curves, and the widths of its texts. All lengths are in points (1/72 inch).
 #pragma once
 
 #include "report/figures/figure_layout.hpp"
@@ -23,7 +23,7 @@ struct LineStyle {
 /// Returns the style of the curve with this index.
 LineStyle line_style(std::size_t curve);
 
-/// Returns an upper bound of the width of a line in DejaVu Sans.
+/// Returns an upper bound of the width of a line of text in DejaVu Sans with 8 points.
 double width_of_line(const std::string& text);
 
 /// Returns the text in lines of at most this width, broken after blanks where possible.
@@ -36,8 +36,8 @@ struct LegendEntry {
   std::vector<std::string> lines;
 };
 
-/// Places names side by side from `left` on, in a figure with this width. A name that is wider than the figure has rows
-/// of its own.
+/// Places names side by side from `left` on, in a figure with this width. A name that is wider than the figure is
+/// broken into several rows, which it shares with no other name.
 std::vector<LegendEntry> place_names(const std::vector<std::string>& names, double left, double width);
 
 /// Draws bands, lines, marks and names of the groups.

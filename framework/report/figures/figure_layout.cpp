@@ -23,7 +23,7 @@ constexpr int kMostDrawn = 128;  ///< largest number of cells along a side; a pa
 constexpr const char* kStar = "#e6007e";
 
 /// Returns gnuplot's command for a star with five rays of length `ray` about (next_x, next_y). The star is a polygon,
-/// because the look of a letter depends on the font. The star may extend beyond the edge of a map.
+/// because the shape of a character depends on the font. The star may extend beyond the edge of a map.
 std::string star_at(double ray) {
   std::string out = "set object 1 polygon";
   for (int i = 0; i <= 10; ++i) {
@@ -100,7 +100,7 @@ Box map_box(const Area& area, double left, double top, double side) {
 }
 
 ZRange z_range_of(const std::vector<MapsAtTap>& snapshots, const SceneFrame& frame) {
-  // Returns how far a point is above the middle of the desk in the picture, by gnuplot's parallel projection.
+  // Returns how far a point is above the middle of the desk in the picture after gnuplot's parallel projection, metres.
   const auto up = [&](double x, double y, double height) {
     const double back = (y - 0.5 * frame.area.depth) * std::cos(kTurn) - (x - 0.5 * frame.area.width) * std::sin(kTurn);
     return back * std::cos(kTilt) + (height - frame.desk) * std::sin(kTilt);
@@ -125,8 +125,8 @@ MapsAtTap without_hidden_taps(const MapsAtTap& snapshot, const SceneFrame& frame
   const Area& area = frame.area;
   const CandidateGrid& candidates = frame.candidates;
   const double step = 0.5 * std::min(area.width / candidates.columns, area.depth / candidates.rows);
-  // The surface hides a tap only if it is higher than the tap by more than this margin, because the tap's mark is above
-  // the surface.
+  // The surface hides a tap only if it rises above the line of sight by more than this margin, because a part of the
+  // mark extends above the surface.
   const double height = snapshot.surface.maxCoeff() - snapshot.surface.minCoeff();
   const double margin = 0.06 * height;
   const auto hidden = [&](const TapMark& mark) {
@@ -249,7 +249,8 @@ void FigureLayout::surface(const Box& box, const SceneFrame& frame, const std::s
   // height of the desk in the picture
   const double middle = box.top + 0.5 * box.height + 0.5 * scale * (z_range.above - z_range.below);
   const double lift = scale * (0.5 * (z_range.low + z_range.top) - frame.desk) * std::sin(kTilt);
-  // gnuplot fits the longer side of the area to the shorter side of the margins, and centres both.
+  // gnuplot scales the longer side of the area to the shorter side of the rectangle between the margins, and centres
+  // the area in it.
   const double side = scale * std::max(area.width, area.depth);
   const Box inner{box.left + 0.5 * (box.width - side), middle - lift - 0.5 * side, side, side};
   std::string settings = axis('x', area.width) + axis('y', area.depth) + colour_range(colours);
@@ -290,7 +291,7 @@ std::string FigureLayout::script() const {
   const bool has_bar = panels_.find("$bar ") != std::string::npos;
   const std::string out = (has_bar ? fmt::format("$bar << END\n{}END\n", bar) : "") + data_ + "set multiplot\n" +
                           panels_ + "unset multiplot\nset output\n";
-  // In the C locale, gnuplot warns about any encoding. Scripts in ASCII therefore set none.
+  // In the C locale, gnuplot warns about any `set encoding`. Scripts in ASCII therefore set no encoding.
   const bool is_ascii =
       std::all_of(out.begin(), out.end(), [](char c) { return static_cast<unsigned char>(c) < 0x80; });
   return (is_ascii ? "" : "set encoding utf8\n") + out;
@@ -300,7 +301,7 @@ std::vector<fs::path> write_figures(const fs::path& folder, const std::vector<Fi
   make_inner_folder(folder);
   std::error_code failed;
   for (const auto& [name, layout] : figures) {
-    // Removes an older picture, which would not match this script.
+    // Removes an older picture, which would not match the new script.
     fs::remove(folder / (name + ".png"), failed);
     write_file(folder / (name + ".gnuplot"),
                picture_header(layout.width(), layout.height(), name + ".png", name + ".png") + layout.script());

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A picture of several panels as a gnuplot script. Panels have positions in pixels. Their data is in named blocks at
-// the beginning of the script.
+// A picture of several panels as a gnuplot script. Positions of panels are in pixels, or in points in figures for
+// print. The data of the panels is in named blocks at the beginning of the script.
 #pragma once
 
 #include "experiment/experiment.hpp"
@@ -22,7 +22,7 @@ struct SceneFrame {
 
 SceneFrame scene_frame_of(const Experiment& experiment);
 
-/// A rectangle of the picture, in pixels from its upper left corner.
+/// A rectangle in the picture. Positions are in pixels from the upper left corner of the picture.
 struct Box {
   double left = 0.0;
   double top = 0.0;
@@ -33,14 +33,14 @@ struct Box {
 /// Returns gnuplot's command `set palette`, one line.
 std::string gnuplot_palette(Palette palette);
 
-/// Returns the maps without the marks of those taps that the surface hides in the view from the side.
+/// Returns `snapshot` without the marks of the taps that the surface hides in the view from the side.
 MapsAtTap without_hidden_taps(const MapsAtTap& snapshot, const SceneFrame& frame);
 
-/// Returns `values`, one per candidate, as rows of a matrix, beginning with the lowest y. A grid with more cells than a
-/// picture can show is thinned out.
+/// Returns `values`, one per candidate, as rows of a matrix, beginning with the lowest y. If the grid has more cells
+/// than a picture can show, rows and columns are left out.
 std::string matrix_of(const SceneFrame& frame, const Eigen::VectorXd& values);
 
-/// Returns gnuplot's columns that place a matrix of matrix_of(), in centimetres.
+/// Returns the columns for gnuplot's `using`, which place the cells of a matrix of matrix_of(), in centimetres.
 std::string matrix_columns(const SceneFrame& frame);
 
 /// Returns lines "x y height deviation" of the cells of matrix_of(), in centimetres, with a blank line after each row.
@@ -48,9 +48,10 @@ std::string surface_of(const SceneFrame& frame, const Eigen::VectorXd& height, c
 
 /// Extent of surfaces in the view from the side, metres.
 struct ZRange {
-  double low = 0.0;  ///< least and largest height, below and above the desk
+  double low = 0.0;  ///< `low` and `top`: least and largest height of desk, surfaces and marks
   double top = 0.0;
-  double above = 0.0;  ///< distance in the picture from the middle of the desk to the upper edge
+  /// `above` and `below`: extent of the picture above and below the middle of the desk, after projection
+  double above = 0.0;
   double below = 0.0;
 };
 
@@ -77,7 +78,8 @@ class FigureLayout {
   /// `next_NAME` ("x y"), in centimetres.
   void taps(const std::string& name, const MapsAtTap& snapshot);
 
-  /// Adds text of one or more lines with its upper edge at `top`; `x` is its left end or its middle.
+  /// Adds text of one or more lines with its upper edge at `top`. `x` is the left end or the middle of the lines, as
+  /// `align` says.
   enum class Align { left, centre };
   void text(const std::string& words, double x, double top, int points, Align align = Align::left);
   /// Adds one vertical line of text with its middle at `middle`, left of a row of panels.
@@ -90,9 +92,9 @@ class FigureLayout {
   /// Adds the block `surface` in three dimensions, with the taps `taps` on it. The surface is in the middle of the box.
   void surface(const Box& box, const SceneFrame& frame, const std::string& surface, const std::string& taps,
                const Colours& colours, const ZRange& z_range);
-  /// Adds the scale of the colours.
+  /// Adds the colour bar.
   void bar(const Box& box, const Colours& colours);
-  /// Adds the legend of the marks. It begins at `x`, and its middle is at `y`.
+  /// Adds the legend of the marks. The legend begins at `x`, and its vertical middle is at `y`.
   void legend(double x, double y, bool failed, bool next = true);
 
   /// Adds a plot that consists of lines of settings and one plot command.
@@ -111,7 +113,8 @@ class FigureLayout {
   std::string panels_;
 };
 
-/// Returns the least step of 1, 2, 5, 10, ... for which a range of width `spread` has at most `most` + 1 tics.
+/// Returns the least step among 1, 2 and 5 times a power of ten for which a range of width `spread` has at most `most`
+/// + 1 tics.
 double tic_step(double spread, double most);
 
 /// Returns a length in metres as centimetres, for a block of data.

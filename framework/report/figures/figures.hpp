@@ -33,20 +33,21 @@ Figures write_sweep_figures(const Sweep& sweep, const std::filesystem::path& fol
 /// Default width of figures with curves, metres: the text width of a page with two columns.
 inline constexpr double kFigureWidth = 0.178;
 
-/// Draws curves of groups into `file`, a .png, .pdf or .svg. The picture has this width in metres, and its letters have
-/// 8 points in print. Each scene has one panel with the same axes. Each group has a line with a band. The script with
-/// all data remains as NAME.gnuplot. Its first comments have `title` and the text for a caption. Returns a remark about
-/// panels or groups that are not drawn because there are too many. Returns "" if all are drawn. Throws Error of kind
-/// `run` if gnuplot fails; the script remains.
+/// Draws curves of groups into `file`, a .png, .pdf or .svg. The picture is `width` metres wide, and its letters have 8
+/// points in print. Each scene has one panel, and all panels have the same axes. Each group has a line (the mean) with
+/// a band (the interval). The script with all data remains as NAME.gnuplot. Comments at its beginning contain `title`
+/// and the text of a caption. Returns a remark about panels or groups that are not drawn because there are too many.
+/// Returns "" if all are drawn. Throws Error of kind `run` if gnuplot fails; the script remains.
 std::string write_curves_figure(const GroupCurves& curves, const std::string& title, double width,
                                 const std::filesystem::path& file);
 
-/// Draws `paper_progress` of a run, in the layout of the paper's figure 2. Throws the errors of write_run_figures().
+/// Draws the figure `paper_progress` of a run, in the layout of figure 2 of the paper (Sun and Min 2021, arXiv
+/// 2110.09593). Throws the errors of write_run_figures().
 Figures write_paper_figures(const RunEnvironment& environment, const RecordedRun& recording,
                             const std::filesystem::path& folder);
 
-/// Draws the paper's `figure_2` to `figure_5` from a sweep with the jobs that they need. Throws the errors of
-/// write_run_figures(), and Error if every figure lacks jobs.
+/// Draws `figure_2` to `figure_5`, which reproduce these figures of the paper, from a sweep with the necessary jobs.
+/// Throws the errors of write_run_figures(), and Error if every figure lacks jobs.
 Figures write_paper_figures(const RunEnvironment& environment, const Sweep& sweep, const std::filesystem::path& folder);
 
 }  // namespace palpate

@@ -15,7 +15,7 @@
 namespace palpate {
 namespace {
 
-/// States of one run that a figure of the paper shows.
+/// States of one run for a figure that reproduces a figure of the paper (Sun and Min 2021, arXiv 2110.09593).
 struct Progress {
   std::string strategy;
   std::vector<int> iterations;
@@ -59,14 +59,14 @@ Colours colours_of(const PanelRow& row) {
   return {Palette::viridis, 0.0, high > 0.0 ? high : 1.0, fmt::format("score ({})", row.run.strategy)};
 }
 
-/// Returns a note that scores are below 0; "" if no score is.
+/// Returns a note that some scores are below 0; "" if no score is below -0.005.
 std::string below_zero_words(const std::vector<PanelRow>& rows) {
   double least = 0.0;
   for (const PanelRow& row : rows) least = is_scores(row) ? std::min(least, extent(row).first) : least;
   return least < -0.005 ? fmt::format("scores below 0, to {:.2f}, have the colour of 0", least) : "";
 }
 
-/// Returns the suffix in the names of a panel's blocks.
+/// Returns the suffix of the names of a panel's data blocks.
 std::string block_suffix(const Progress& progress, std::size_t column) {
   std::string out = fmt::format("{}_{}", progress.strategy, progress.iterations[column]);
   const auto is_other = [](unsigned char c) { return std::isalnum(c) == 0; };
@@ -76,7 +76,7 @@ std::string block_suffix(const Progress& progress, std::size_t column) {
 
 double height_of(const PanelRow& row, const Box& map) { return is_surface(row) ? kSurface : map.height; }
 
-/// Draws the panels of a row below `top` and the scale of their colours. `map` is the box of the first map.
+/// Draws the panels of a row below `top`, and their colour bar. `map` is the box of the first map.
 void draw_row(FigureLayout& layout, const PanelRow& row, double top, const Box& map) {
   const Progress& run = row.run;
   const Colours colours = colours_of(row);
@@ -88,7 +88,7 @@ void draw_row(FigureLayout& layout, const PanelRow& row, double top, const Box& 
     if (is_surface(row)) {
       layout.data("surface_" + key, surface_of(run.frame, snapshot.surface, snapshot.deviation));
       MapsAtTap seen = without_hidden_taps(snapshot, run.frame);
-      seen.next.reset();  // The map shows the next tap.
+      seen.next.reset();  // Only the map shows the next tap.
       layout.taps("seen_" + key, seen);
       layout.surface({left - 4, top, map.width + 26, kSurface}, run.frame, "surface_" + key, "seen_" + key, colours,
                      z_range);
@@ -103,9 +103,9 @@ void draw_row(FigureLayout& layout, const PanelRow& row, double top, const Box& 
   layout.bar({left - kStep + map.width + gap, top, 14, height_of(row, map)}, colours);
 }
 
-/// Returns the run after these iterations of the paper. Iteration k of the paper is the state after k - 1 taps beyond
-/// the initial ones. If the run is shorter, its last tap stands for the first missing iteration. Later iterations are
-/// left out.
+/// Returns the states of the run at these iterations of the paper. Iteration k of the paper is the state after the
+/// initial taps and k - 1 further taps. If the run ended before an iteration, the state after its last tap is shown
+/// instead, and all later iterations are left out.
 Progress progress_of(const RunEnvironment& environment, const RecordedRun& recording,
                      const std::vector<int>& iterations) {
   const int all = static_cast<int>(recording.taps.size());
@@ -127,7 +127,7 @@ Progress progress_of(const RunEnvironment& environment, const RecordedRun& recor
 }
 
 /// Draws rows of panels below each other. The rows belong to one run, or to several runs with equal numbers of
-/// snapshots. `rows` is not empty.
+/// snapshots. `rows` must not be empty.
 Figure panels_figure(const std::string& name, const std::string& title, const std::vector<PanelRow>& rows) {
   constexpr double kWords = 60;  // pixels above the first row of a run
   constexpr double kBelow = 54;  // pixels below a row
@@ -162,7 +162,7 @@ Figure panels_figure(const std::string& name, const std::string& title, const st
   return {name, std::move(layout)};
 }
 
-/// Draws the surfaces above the strategy's scores, as figures 2 and 3 of the paper do.
+/// Draws a row of surfaces, and below it a row of maps of the strategy's scores, as in figures 2 and 3 of the paper.
 Figure progress_figure(const std::string& name, const std::string& title, const Progress& progress) {
   return panels_figure(name, title, {{progress, &MapsAtTap::surface}, {progress, &MapsAtTap::scores}});
 }
@@ -186,7 +186,7 @@ std::string title_with_seed(const std::string& title, const Sweep& sweep, const 
   return title + (seed.empty() ? "" : ", seed " + seed);
 }
 
-/// The figures of a sweep, with notes on figures for which a job is missing.
+/// The figures of a sweep, and notes about figures for which a job is missing.
 struct PaperFigures {
   const RunEnvironment& environment;
   const Sweep& sweep;

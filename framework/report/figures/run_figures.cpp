@@ -45,16 +45,18 @@ struct MapPanel {
   Eigen::VectorXd values;
   Palette palette;
   double high;
-  std::string outside;  ///< text with the range of the values, if it exceeds the scale
+  std::string outside;  ///< text with the range of the values, if some values are outside the scale
 };
 
-/// Returns the maps of u and w with e = u w, or of u and p with the score.
+/// Returns the maps of the uncertainty u, the weight w and e = u w if the footprint is the label GP. Otherwise returns
+/// the maps of u, the probability p of an object, and the score.
 std::vector<MapPanel> map_panels(const MapsAtTap& last) {
   const auto outside = [](const Eigen::VectorXd& values, double high) {
     if (values.minCoeff() >= -5e-4 && values.maxCoeff() <= high + 5e-4) return std::string();
     return fmt::format("\nrange: {:.2f} to {:.2f}", values.minCoeff(), values.maxCoeff());
   };
-  // If the footprint is the weight w, the figure shows e = u w instead of the score.
+  // If the footprint is the label GP (whose mean is w), the figure shows the exploration term e = u w instead of the
+  // score.
   const Eigen::VectorXd e = last.has_weight() ? last.exploration() : last.scores;
   const double most = e.maxCoeff() > 0.0 ? e.maxCoeff() : 1.0;
   std::vector<MapPanel> panels{{"u", last.uncertainty, Palette::cividis, 1.0, ""}};
@@ -98,14 +100,14 @@ Figure maps_figure(const ExperimentOptions& options, const SceneFrame& frame, co
 
 constexpr double kNameHeight = 17;
 
-/// Returns how many names of curves are side by side.
+/// Returns the number of curve names per line of the legend.
 std::size_t columns_of(const CurvePanel& panel) {
   constexpr std::size_t kLongestOfTwo = 22;
   const auto is_short = [](const Curve& one) { return one.name.size() <= kLongestOfTwo; };
   return std::all_of(panel.curves.begin(), panel.curves.end(), is_short) ? 2 : 1;
 }
 
-/// Returns the number of lines with names above the panel. There they hide no curve.
+/// Returns the number of lines with curve names. These lines are above the panel, where they hide no curve.
 std::size_t name_lines(const CurvePanel& panel) {
   if (panel.curves.front().name.empty()) return 0;
   return (panel.curves.size() + columns_of(panel) - 1) / columns_of(panel);
@@ -134,7 +136,7 @@ void draw_curves(FigureLayout& layout, const Box& box, double top, const CurvePa
   layout.plot(box, settings, clauses);
 }
 
-/// Draws the curves over the taps.
+/// Draws the curves of the run against the taps.
 Figure curves_figure(const RecordedRun& recording, const History& history) {
   constexpr int kColumns = 4;
   constexpr double kWidth = 280;
@@ -154,7 +156,7 @@ Figure curves_figure(const RecordedRun& recording, const History& history) {
     tops.push_back(bottom + 42 + kNameHeight * static_cast<double>(lines));
     bottom = tops.back() + kHeight + 60;
   }
-  // Constants are lines below the panels.
+  // Constants are listed below the panels.
   const int width = 70 + columns * 365;
   std::vector<std::string> words;
   if (!constants.empty()) words.emplace_back("Constant over all taps:");

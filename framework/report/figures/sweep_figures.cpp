@@ -44,7 +44,7 @@ std::vector<Group> groups_of(const Sweep& sweep, const std::vector<Row>& results
   return groups;
 }
 
-/// Returns the settings of an axis for these values. The axis has so few tics that their numbers do not overlap.
+/// Returns the settings of an axis for these values. The axis has few enough tics that their numbers do not overlap.
 std::string value_axis(const std::vector<double>& values, double factor) {
   const auto [least, most] = std::minmax_element(values.begin(), values.end());
   const double spread = *most > *least ? (*most - *least) / factor : std::max(1e-9, std::abs(*most / factor));
@@ -54,7 +54,8 @@ std::string value_axis(const std::vector<double>& values, double factor) {
   return fmt::format("set xrange [{:.6g}:{:.6g}]\nset xtics {:.6g}\n", low, high, tic_step(spread, 5.0));
 }
 
-/// Draws a panel of horizontal boxes, one per line and group. The first group is at the top.
+/// Draws a panel of horizontal box plots, one line per group, with the first group at the top. A box plot shows the 10,
+/// 25, 50, 75 and 90 % quantiles, and dots show the jobs.
 void draw_boxes(FigureLayout& layout, const Box& box, const std::string& metric,
                 const std::vector<std::vector<double>>& groups) {
   std::vector<double> all;
@@ -92,7 +93,7 @@ void draw_boxes(FigureLayout& layout, const Box& box, const std::string& metric,
   layout.plot(box, settings, clauses);
 }
 
-/// Returns those metrics of the figure for which at least one job has a value.
+/// Returns the metrics of the figure for which at least one job has a value.
 std::vector<std::string> drawn_metrics(const std::vector<Group>& groups, const std::vector<Row>& results) {
   std::vector<std::string> out{"object_taps", main_error(results), "footprint_iou", "robot_seconds"};
   const auto is_absent = [&](const std::string& metric) {
@@ -166,7 +167,7 @@ Axis axis_of(const Sweep& sweep, const std::string& key) {
   return axis;
 }
 
-/// Returns gnuplot's list of tics with one value at each whole number.
+/// Returns gnuplot's list of tics, with the values as labels at 0, 1, 2 and so on.
 std::string tics(const std::vector<std::string>& values) {
   std::string out;
   for (std::size_t i = 0; i < values.size(); ++i)
@@ -180,7 +181,7 @@ struct HeatMap {
   Axis y;
   std::string error;
   std::vector<std::vector<double>> cells;  ///< one row per value of the key on the y axis
-  std::vector<double> means;               ///< values of all cells that have one
+  std::vector<double> means;               ///< values of all cells with a value
 };
 
 HeatMap heat_map_of(const Sweep& sweep, const std::vector<Row>& results, const std::vector<std::string>& keys) {
@@ -197,7 +198,8 @@ HeatMap heat_map_of(const Sweep& sweep, const std::vector<Row>& results, const s
   return out;
 }
 
-/// Adds the cells as a matrix with their numbers. Numbers are black on light colours and white on dark ones.
+/// Adds data blocks with the cells as a matrix, and with the numbers to print in the cells. Numbers are black on light
+/// colours and white on dark colours.
 void add_cells(FigureLayout& layout, const HeatMap& map, const Scale& scale, const Colours& colours) {
   std::string matrix;
   std::string numbers;
@@ -215,7 +217,7 @@ void add_cells(FigureLayout& layout, const HeatMap& map, const Scale& scale, con
   layout.data("numbers", numbers);
 }
 
-/// Returns the text of the heat map: "rmse_m, mean over seed, taps; the first 24 values of a key".
+/// Returns the title of the heat map: "rmse_m, mean over seed, taps; the first 24 values of a key".
 std::string heat_map_words(const Sweep& sweep, const HeatMap& map, const std::vector<std::string>& keys) {
   std::vector<std::string> over;
   if (std::find(sweep.keys.begin(), sweep.keys.end(), "seed") != sweep.keys.end()) over.emplace_back("seed");
@@ -230,8 +232,8 @@ std::size_t longest_of(const std::vector<std::string>& values) {
   return out;
 }
 
-/// Draws the mean error by the first two swept keys with several values, the seed excluded. Returns nullopt if there
-/// are fewer than two.
+/// Draws the mean error by the values of two keys: the first two swept keys with several values, except the seed.
+/// Returns nullopt if there are fewer than two such keys.
 std::optional<Figure> heat_map(const Sweep& sweep, const std::vector<Row>& results) {
   const std::vector<std::string> keys = varying_keys(sweep, setting_keys(sweep));
   if (keys.size() < 2) return {};
@@ -269,8 +271,8 @@ std::optional<Figure> heat_map(const Sweep& sweep, const std::vector<Row>& resul
   return Figure{"heat_map", std::move(layout)};
 }
 
-/// Returns the error over the taps. All keys that vary form the groups. Returns nullopt unless the values after each
-/// tap are stored.
+/// Returns curves of the error against the taps. The keys curve_keys() form the groups. Returns nullopt unless the
+/// values after each tap are stored.
 std::optional<GroupCurves> kept_curves(const Sweep& sweep, const std::vector<Row>& results) {
   if (!TapSummaries::any_kept(sweep)) return std::nullopt;
   std::vector<TapValues> values(sweep.jobs.size());

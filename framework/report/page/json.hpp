@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Conversions to JSON that the library lacks: optional values, rows, tables.
+// Conversions to JSON that nlohmann::json lacks: optional values, rows, tables.
 #pragma once
 
 #include "analysis/table.hpp"

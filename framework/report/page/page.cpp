@@ -20,7 +20,8 @@ extern "C" const char palpate_asset_style[], palpate_asset_common[];
 namespace palpate {
 namespace {
 
-/// Returns an element with bytes that a script unpacks by their `format`. Browsers do not execute scripts of this type.
+/// Returns a script element that contains `bytes` in base64. Browsers do not execute scripts of this type; a script of
+/// the page unpacks the bytes, as `format` says.
 std::string packed(const char* name, const char* format, std::string_view bytes) {
   return fmt::format("<script type=\"application/{}\" id=\"{}\">{}</script>\n", format, name, base64(bytes));
 }
@@ -80,7 +81,7 @@ std::string make_page(std::string_view script, const Json& data, const std::stri
       "content=\"width=device-width\">\n<title>palpate</title>\n<style>\n{}</style>\n</head>\n<body>\n<noscript>This "
       "page needs JavaScript, which your browser does not run.</noscript>\n",
       kPolicy, of == PageOf::server ? "; connect-src 'self'" : "",
-      // An empty icon keeps browsers from requesting one from the server.
+      // With an empty icon, browsers do not request an icon from the server.
       of == PageOf::server ? "<link rel=\"icon\" href=\"data:,\">\n" : "", palpate_asset_style);
   static const std::string plotly =
       packed("plotly", "gzip",

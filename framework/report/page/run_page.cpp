@@ -170,8 +170,8 @@ PackedMaps pack_maps(const std::vector<Eigen::VectorXf>& frames) {
   return out;
 }
 
-/// Returns the rounded values of `get` for all elements: first the first value, then the differences between
-/// neighbours, which compress well.
+/// Returns the rounded values of `get` for all elements in a form that compresses well: the first value, followed by
+/// the differences between neighbours.
 template <class List, class Get>
 static std::vector<long> steps_of(const List& list, const Get& get) {
   std::vector<long> out;
@@ -207,7 +207,7 @@ static Json json_of_surface(const Surface& mesh) {
           {"j", corners(1)}, {"k", corners(2)}, {"deviation", deviations}};
 }
 
-/// Returns the status of the run when `recording` was read, which is also the time of all other data of the page.
+/// Returns the status that the run had when `recording` was read, so that it matches all other data of the page.
 static RunStatus status_of(const RecordedRun& recording) {
   if (recording.summary) {
     const auto state = recording.failed() ? RunStatus::State::failed : RunStatus::State::done;
@@ -217,7 +217,7 @@ static RunStatus status_of(const RecordedRun& recording) {
   return {now.end ? RunStatus::State::running : now.state, 0, ""};
 }
 
-/// Returns the data that every tap may change. `history` has at least one moment.
+/// Returns the data that may change with every tap. `history` has at least one moment.
 static Json json_of_standing(const RecordedRun& recording, const History& history) {
   const RunStatus status = status_of(recording);
   const Curves curves = curves_of(recording, history);
@@ -281,7 +281,7 @@ std::string add_maps(Json& data, const History& history, std::size_t stride, std
 std::string run_page(const RecordedRun& recording, const History& history, const OnProgress& progress) {
   Json data = run_data(recording, history);
   const int last = history.moments.back().taps;
-  // Maps do not compress to less than a tenth of their size. With more than kMostRaw bytes, the page would be too
+  // Compressed maps have at least a tenth of their size. With more than kMostRaw bytes of maps, the page would be too
   // large.
   constexpr double kMostRaw = 19e6;
   double raw = 0.0;

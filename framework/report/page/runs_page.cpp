@@ -19,8 +19,8 @@ namespace {
 
 std::string letter_of(std::size_t run) { return std::string(1, static_cast<char>('A' + run)); }
 
-/// Returns the keys whose values differ between the configs, with the value in each run. If a run has no such key, its
-/// value is "".
+/// Returns a table of the keys whose values differ between the configs, with the value in each run; "" for a run
+/// without the key.
 Table differences_table(const std::vector<ComparedRun>& runs) {
   std::vector<Row> configs;
   for (const ComparedRun& run : runs) configs.push_back(read_settings(run.recording.directory));
@@ -33,7 +33,7 @@ Table differences_table(const std::vector<ComparedRun>& runs) {
   return table;
 }
 
-/// Returns a table with state and errors of each run; `described` has their data.
+/// Returns a table with state and errors of each run. `described`: data of the runs, from run_data().
 Table standings_table(const std::vector<ComparedRun>& runs, const Json& described) {
   std::vector<Row> errors;
   for (const ComparedRun& run : runs) {

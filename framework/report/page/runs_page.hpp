@@ -19,8 +19,9 @@ struct ComparedRun {
 };
 
 /// Returns a page of 2 to kMostRunsOnAPage runs. It shows errors over taps and over robot time, surfaces after a number
-/// of taps, and differences between the configs. If the candidates are equal, it also shows the differences from the
-/// first surface. The page is at most kMostPageBytes large. `progress` is called while maps are packed.
+/// of taps, and differences between the configs. For runs with the same candidates as the first run, it also shows the
+/// differences from the first surface. Maps are left out until the page has at most kMostPageBytes. `progress` is
+/// called while maps are packed.
 std::string runs_page(const std::vector<ComparedRun>& runs, const OnProgress& progress);
 
 }  // namespace palpate

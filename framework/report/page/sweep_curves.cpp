@@ -18,7 +18,7 @@
 namespace palpate {
 namespace {
 
-/// Each colour is used for a solid and a dashed line.
+/// Largest number of groups per scene. Each colour is used twice: for a solid and for a dashed line.
 constexpr std::size_t kMostGroupsOfAScene = 2 * kLineColours.size();
 
 /// Returns the choices of keys for groups: all keys together, then each key alone. Choices with too many groups are

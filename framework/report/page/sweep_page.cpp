@@ -25,8 +25,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Returns a swept key, its values, and the index of each job's value. Numeric values of one dimension are sorted;
-/// other values keep the order of the sweep. The value "" of jobs without this option comes first.
+/// Returns a swept key, its values, and for each job the index of its value. Values are sorted if all of them are
+/// numbers with the same unit; otherwise they keep the order of the sweep. The value "" of jobs without this option
+/// comes first.
 Json json_of_key(const Sweep& sweep, const std::vector<JobResult>& jobs, const std::string& key) {
   std::vector<JobGroup> groups = group_jobs(sweep, {}, {key});
   std::map<std::string, double> numbers;
@@ -98,7 +99,7 @@ Json json_of_column(const NumberColumn& one) {
           {"is_error", can_be_error(one.column)}};
 }
 
-/// Returns the number of the unit of statistics (JobUnits) for each of `jobs`.
+/// Numbers the units of statistics (JobUnits) from 0. Returns for each job the number of its unit.
 std::vector<std::size_t> unit_numbers(const Sweep& sweep, const std::vector<Row>& results,
                                       const std::vector<JobResult>& jobs) {
   const JobUnits units(sweep, results);
@@ -116,7 +117,7 @@ struct PageSetting {
 
 std::vector<PageSetting> settings_of(const Sweep& sweep, const std::vector<JobResult>& jobs) {
   const std::vector<std::string> scenes = scene_keys(sweep);
-  std::map<int, std::size_t> places;  // position on the page of each job, by the job's index in the sweep
+  std::map<int, std::size_t> places;  // index of each job in `jobs`, by the index of the job in the sweep
   for (std::size_t i = 0; i < jobs.size(); ++i) places[jobs[i].job->index] = i;
   std::map<std::string, std::size_t> known;
   std::vector<PageSetting> out;
@@ -185,8 +186,8 @@ Json json_of_fronts(const std::vector<PageSetting>& settings, const std::vector<
   return out;
 }
 
-/// Returns which jobs are on the page: every `step`-th job in the list of all settings with their jobs. Every setting
-/// has about the same share of its jobs on the page. Settings with the same seeds keep the same seeds.
+/// Returns for each job whether it is on the page: every `step`-th job, in a list of all jobs sorted by setting. Every
+/// setting therefore has about the same share of its jobs on the page.
 std::vector<bool> drawn_jobs(const Sweep& sweep, std::size_t step) {
   std::vector<bool> drawn(sweep.jobs.size(), true);
   if (step == 1) return drawn;
@@ -246,7 +247,7 @@ Json json_of_job(const Job& job, const RunStatus& standing, const fs::path& dire
           {"reported", fs::exists(directory / "report.html", none)}};
 }
 
-/// The jobs of a page, and a tally of all jobs.
+/// The jobs on a page, and the counts of all jobs.
 struct PageJobs {
   std::vector<Row> results;  ///< rows of the jobs that have ended
   std::vector<JobResult> jobs;
@@ -254,7 +255,7 @@ struct PageJobs {
   Tally tally;
 };
 
-/// Reads all jobs and keeps every `step`-th of each setting.
+/// Reads all jobs and keeps the drawn_jobs().
 PageJobs read_page_jobs(const Sweep& sweep, std::size_t step, const OnProgress& progress) {
   const std::vector<bool> drawn = drawn_jobs(sweep, step);
   PageJobs out;
@@ -273,7 +274,7 @@ PageJobs read_page_jobs(const Sweep& sweep, std::size_t step, const OnProgress& 
   return out;
 }
 
-/// Adds the columns with their means over settings, and the fronts, to the data of a page.
+/// Adds to the data of a page: the columns with their mean per setting, and the fronts.
 void add_columns(Json& data, const Sweep& sweep, const std::vector<JobResult>& jobs,
                  const std::vector<NumberColumn>& columns, const std::vector<std::size_t>& units) {
   const std::vector<PageSetting> settings = settings_of(sweep, jobs);
@@ -284,7 +285,7 @@ void add_columns(Json& data, const Sweep& sweep, const std::vector<JobResult>& j
   for (const NumberColumn& one : columns) {
     estimates.push_back(estimate_settings(settings, jobs, one, units));
     data["columns"].push_back(json_of_column(one));
-    // If each setting has one job, the job's number is the mean.
+    // If each setting has one job, the mean is the value of the job.
     if (settings.size() < jobs.size()) data["columns"].back()["estimates"] = json_of_estimates(estimates.back());
   }
   data["fronts"] = json_of_fronts(settings, columns, estimates);

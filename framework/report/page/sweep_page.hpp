@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The page of a sweep: the state of every job, the results of finished jobs, means over settings, and Pareto fronts.
-// web/sweep.js draws the data. The page's reader chooses the keys of groups, so the page itself computes the means of
-// groups.
+// web/sweep.js draws the data. The reader of the page chooses the keys of groups, so the page itself computes the means
+// of groups.
 #pragma once
 
 #include "report/history.hpp"

@@ -27,7 +27,8 @@ bool other_way(const TapLine& one, const TapLine& other) {
   return one.start != other.start || one.direction != other.direction;
 }
 
-/// Returns the first tap for which this build would have chosen another position; 0 if there is none.
+/// Returns the number of the first tap for which this build would have chosen another position or line; 0 if there is
+/// no such tap.
 int first_drift(const RecordedRun& recording, const History& history) {
   for (std::size_t i = 0; i < recording.taps.size(); ++i) {
     const std::optional<TapRecord>& next = history.moments[i].next;

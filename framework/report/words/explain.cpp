@@ -20,8 +20,8 @@
 namespace palpate {
 namespace {
 
-/// Adds the values of the maps at the tap's position. These are u and, depending on the record, either w and e or the
-/// probability of `footprint`.
+/// Adds the values of the maps at the tap's position: u and, depending on the record, either w and e or the probability
+/// p. `footprint`: type of the footprint.
 void explain_place(TextSections& sections, const Row& row, const std::string& footprint) {
   std::vector<std::string> said;
   const auto say = [&](const char* name, const std::string& before, const std::string& meaning) {
@@ -85,7 +85,7 @@ class FromAboveExplained final : public Explanation {
         break;
       case Source::fallback:
         explain_fallback();
-        explain_score(1.0);  // u is the score, and is 1 before any tap
+        explain_score(1.0);  // the score of the fallback is u, which is 1 before any tap
         break;
       case Source::caller:
         text_.add("The caller chose it, by scores of its own.");
@@ -138,7 +138,7 @@ class FromAboveExplained final : public Explanation {
         "u.");
   }
 
-  /// Returns the number of candidates that the choice excluded because they must not be tapped again.
+  /// Returns the number of candidates that were excluded from the choice because they must not be tapped again.
   int left_out() {
     std::set<int> out;
     for (int i = 0; i < number_ - 1; ++i) {
@@ -256,7 +256,8 @@ class FromAboveExplained final : public Explanation {
     text_.add(text);
   }
 
-  /// Adds whether the tap was a suspected outlier right after it, and whether it is one after all taps.
+  /// Adds whether the tap was suspected to be an outlier right after it was made, and whether it is suspected after all
+  /// taps.
   void explain_doubt() {
     if (belief_option(options_, "height.outlier_probability").empty() || !tap_.is_contact()) return;
     text_.heading("Is it an outlier?");

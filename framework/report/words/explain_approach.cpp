@@ -96,7 +96,7 @@ class ApproachExplained final : public Explanation {
     explain_second(scores, now->candidate);
   }
 
-  /// Adds the expected effects of the tap, if they determine the scores.
+  /// Adds the expected effects of the tap, if the acquisition uses them for its scores.
   void explain_gains(int chosen) {
     const auto add = [&](const char* quantity, const char* sentence) {
       if (belief_.available().count(quantity) == 0) return;
@@ -119,7 +119,8 @@ class ApproachExplained final : public Explanation {
     explain_runner_up(line_words(belief_.candidates().line(second)), scores(chosen), scores(second));
   }
 
-  /// Adds the recorded score of an acquisition program, because reports do not start programs.
+  /// Adds the recorded score, if the acquisition is an external program. Reports do not start programs, so other scores
+  /// are unknown.
   void explain_score() {
     if (const auto score = row_.number("score"))
       text_.add(fmt::format("Its score is {}; the program's scores of the other lines are not recorded.",

@@ -21,18 +21,19 @@ class Explanation {
   std::string text();
 
  protected:
-  /// Writes the text. The models must be in their state before the tap.
+  /// Adds the explanation to `text_`. The models must be in their state before the tap.
   virtual void explain() = 0;
 
   std::string heading(const std::string& where) const;
   std::string acquisition_words() const;
-  /// Adds the second best candidate, at `where`, with its score `second`.
+  /// Adds a remark about the second best candidate, at `where`, with the score `second`. `score`: score of the chosen
+  /// candidate.
   void explain_runner_up(const std::string& where, double score, double second);
   /// Adds a remark if the contact's label changed after the tap.
   void explain_label();
   /// Adds a remark if the run failed at this tap.
   void explain_failure();
-  /// Describes how the tap changed the errors, from the rows before and after it.
+  /// Adds how the tap changed the errors. `before` and `after` are rows with the errors before and after the tap.
   void explain_errors(const Row& before, const Row& after);
 
   const RunEnvironment& environment_;

@@ -12,7 +12,7 @@
 namespace palpate {
 namespace {
 
-/// A GP, with the prefix of its fields in the record and the unit of its targets.
+/// A GP and the record of a tap that describes it.
 struct Subject {
   const char* title;
   std::string prefix;  ///< prefix of the GP's fields in the record, with the dot
@@ -41,7 +41,7 @@ std::string parameter_words(std::string name) {
 
 std::string kernel_words(const Subject& subject) {
   std::string out = subject.kernel.type;
-  // The kernel has the units, which the record lacks.
+  // The kernel object provides the units, which the record lacks.
   const auto parameters = subject.context.create<Kernel>(subject.kernel)->parameters();
   const Row numbers = numbers_below(subject.row, subject.prefix + "kernel.");
   for (const auto& field : numbers.fields) {
@@ -83,7 +83,7 @@ void explain_likelihood(TextSections& sections, const Subject& subject) {
   if (!parts.empty()) sections.add(fmt::format("{}.", fmt::join(parts, "; ")));
 }
 
-/// Returns a text about the engine and its measures against rounding errors.
+/// Returns a text about the engine, its approximation error, and jitter against rounding errors.
 std::string rounding_words(const Subject& subject) {
   const double bound = subject.number("error_bound").value_or(0.0);
   const double jitter = subject.number("jitter").value_or(0.0);
@@ -123,7 +123,7 @@ void explain_range_of_weight(TextSections& sections, const Row& row, bool clippe
                (*least < 0.0 || *greatest > 1.0 ? ", which is within [0, 1] but for rounding." : ", within [0, 1]."));
 }
 
-/// Adds type, numbers and remark of a footprint that is not the weight.
+/// Adds type, numbers and remark of a footprint that is not the label GP.
 void explain_footprint(TextSections& sections, const Row& row, const std::string& type) {
   std::vector<std::string> numbers;
   const Row all = numbers_below(row, "footprint.");

@@ -10,8 +10,8 @@
 
 namespace palpate {
 
-/// Returns the titles of all possible maps by their names in History::maps, and of `e` = u w. The titles of "p" and
-/// "score" name the plugins.
+/// Returns the titles of all possible maps, with their names in History::maps as keys, and the title of "e" (e = u w).
+/// The titles of "p" and "score" name the plugins.
 std::map<std::string, std::string> map_titles(const ExperimentOptions& options);
 
 /// Returns the title of an error: "error over the scene", "footprint IoU".

@@ -56,7 +56,7 @@ void TextSections::heading(const std::string& text) {
 }
 
 void TextSections::add(const std::string& text) {
-  constexpr std::size_t kWidth = 96;  // letters per line, without the dash before an item
+  constexpr std::size_t kWidth = 96;  // characters per line, without the dash before an item
   text_ += fmt::format("  - {}\n", fmt::join(wrapped(one_line(text), kWidth), "\n    "));
 }
 

@@ -16,7 +16,7 @@ constexpr double kMostForce = 1000.0;     // newtons; a value in millinewtons is
 constexpr double kMostSeconds = 86400.0;  // one day; a value in milliseconds may be larger
 constexpr std::size_t kLongestLine = 200;
 
-/// Names of the outcomes in their order, without the last, `unknown`.
+/// Names of the outcomes in the order of Outcome, without the last outcome, `unknown`.
 constexpr const char* kOutcomes[] = {"contact", "no_contact", "unreachable", "timeout", "aborted"};
 
 /// Returns whether a value is within bounds; false for NaN.

@@ -17,12 +17,12 @@ struct HeightBounds {
   const char* meaning;  ///< description of both bounds for messages
 };
 
-/// Bounds for an unknown arm and motion.
+/// Bounds if arm and motion are unknown.
 constexpr HeightBounds kAnyArm{-10.0, 10.0, "no arm is that long"};
 
-/// Returns the bounds for a tap from above that travels at the height `desk` + `hover` and ends at `desk` - `overrun`,
-/// metres. The lower bound is 1 cm deeper, for the error of an arm's height. The upper bound is the height of travel,
-/// because the arm would have hit a higher object on its way.
+/// Returns the bounds for a tap from above. The tool travels at the height `desk` + `hover` and descends at most to
+/// `desk` - `overrun`, metres. The lower bound is 1 cm below this end, because an arm's height has errors. The upper
+/// bound is the height of travel, because the arm would have hit a higher object on its way.
 HeightBounds height_bounds(double desk, double overrun, double hover);
 
 /// The two parts of a one-line message about a value that no arm can have measured.
@@ -31,14 +31,14 @@ struct AnswerFault {
   std::string remedy;
 };
 
-/// Completes an answer that has only the touched point or only the distance along `line`. On a line from above, the
-/// distance becomes a height.
+/// Completes an answer that has only the touched point or only the distance along `line`: computes the other of both.
+/// On a line from above, the result has a point on this line and no distance.
 void complete_contact(const TapLine& line, TapResult& answer);
 
-/// Returns the first value of an answer that is out of its bounds or not finite, or nullopt. On a line from above, the
-/// height of a contact has to be within `bounds`. On other lines, the distance has to be within 0 to the line's length,
-/// and the touched point within 10 m. Force and peak force have to be within 0 to 1000 N, the duration within 0 to
-/// 86400 s, one day.
+/// Returns a message about the first value of an answer that is out of its bounds or not finite; nullopt if there is
+/// none. On a line from above, the height of a contact has to be within `bounds`. On other lines, the distance has to
+/// be from 0 to the line's length, and each coordinate of the touched point from -10 to 10 m. Force and peak force have
+/// to be from 0 to 1000 N, and the duration from 0 to 86400 s (one day).
 std::optional<AnswerFault> find_fault(const TapResult& answer, const TapLine& line, const HeightBounds& bounds);
 
 /// Returns the outcome with this name. Returns nullopt for other names, and for `unknown`, which means that there is no

@@ -19,8 +19,8 @@
 namespace palpate {
 namespace {
 
-/// Sockets of this process that lock arms. A forked child would hold the locks, too, so in the child the null device
-/// replaces their descriptors.
+/// Descriptors of the sockets with which this process locks arms. A forked child would hold the locks, too. So in the
+/// child, the null device replaces these sockets.
 struct Held {
   std::mutex guard;
   std::set<int> numbers;
@@ -76,7 +76,8 @@ ArmLock::ArmLock(const std::string& where, const std::string& arm) {
   const Name name = name_of(arm);
   const std::lock_guard<std::mutex> no_fork(held().guard);
   Descriptor socket = make_socket();
-  // The socket accepts no connection. It listens so that holder_of() can read the process id from an attempt.
+  // The socket accepts no connection. It only listens, so that holder_of() can connect and read the process id of the
+  // holder.
   if (socket && ::bind(socket.number(), generic(name), name.bytes) == 0 && ::listen(socket.number(), SOMAXCONN) == 0) {
     held().numbers.insert(socket.number());
     socket_ = std::move(socket);

@@ -78,7 +78,7 @@ std::vector<std::string> own_environment() {
 }
 
 /// Uses posix_spawn, because fork would copy a large process and the locks of other threads. execvp is not used,
-/// because it would run a file that is not a program with a shell.
+/// because it passes a file that is not an executable program to a shell.
 pid_t spawn(const Program& program, const std::vector<int>& files) {
   const std::vector<char*> words = pointers(program.words);
   const std::vector<char*> environment = pointers(program.environment);
@@ -93,7 +93,7 @@ pid_t spawn(const Program& program, const std::vector<int>& files) {
   ::posix_spawnattr_init(&attributes);
   sigset_t usual;
   ::sigemptyset(&usual);
-  for (const int signal : {SIGPIPE, SIGXFSZ}) ::sigaddset(&usual, signal);  // this process may ignore them
+  for (const int signal : {SIGPIPE, SIGXFSZ}) ::sigaddset(&usual, signal);  // this process may ignore these signals
   short flags = POSIX_SPAWN_SETSIGDEF;
   if (program.own_group) {
     sigset_t none;
@@ -127,7 +127,7 @@ std::unique_ptr<ChildProcess> ChildProcess::fork(const std::function<int(const S
     be_child(pipe->to_write, parent, work);
   }
   if (out->pid_ < 0) return nullptr;
-  ::setpgid(out->pid_, out->pid_);  // in parent and child, because either may run first
+  ::setpgid(out->pid_, out->pid_);  // parent and child both call setpgid(), because either may run first
   out->pipe_ = std::move(pipe->to_read);
   return out;
 }
@@ -155,7 +155,7 @@ ChildProcess::~ChildProcess() {
 void ChildProcess::listen(const std::vector<ChildProcess*>& children, double seconds) {
   std::vector<pollfd> pipes;
   for (const ChildProcess* child : children) pipes.push_back({child->pipe_.number(), POLLIN, 0});  // poll() ignores -1
-  // The time is rounded up, because a wait that is slightly too short would repeat many times.
+  // The time is rounded up. Otherwise wait() would repeat many waits of 0 ms at the end of its time.
   ::poll(pipes.data(), pipes.size(), static_cast<int>(std::ceil(1000.0 * std::clamp(seconds, 0.0, 3600.0))));
   for (std::size_t i = 0; i < pipes.size(); ++i) {
     if (pipes[i].revents != 0) children[i]->read_output();

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Child processes: programs, and forked processes for work that may crash or hang or that cannot use threads.
 //
-// Framework and shipped plugins use these functions, which need only the C library. They do not throw. If a system call
-// fails, they return an empty result with errno, so that callers can report the failed action. A child gets its input
-// at the start, and writes its output to one pipe, which closes at its end.
+// Framework and shipped plugins use these functions, which need only the C library. The functions do not throw. If a
+// system call fails, they return an empty result and set errno, so that callers can report the failed action. A child
+// gets its input at the start. It writes its output to one pipe, which closes when the child ends.
 #pragma once
 
 #include <functional>
@@ -19,7 +19,7 @@
 
 namespace palpate {
 
-/// Open file of this process. Programs that the process starts do not have it.
+/// An open file of this process. Programs that the process starts do not inherit the file.
 class Descriptor {
  public:
   Descriptor() = default;
@@ -41,20 +41,20 @@ class Descriptor {
   int number_ = -1;
 };
 
-/// Takes ownership of `number`, the result of open(), and moves it above the standard files. `number` can be that of a
-/// standard file if this process was started without them, but a child's standard files must not overwrite it. Returns
-/// none, with errno, if `number` is negative.
+/// Takes ownership of `number`, the result of open(), and moves it above the numbers of the standard files (0 to 2).
+/// open() returns such a number if this process was started without standard files, and a child's standard files would
+/// then overwrite the file. Returns an empty Descriptor, and keeps errno, if `number` is negative.
 Descriptor above_standard(int number);
 
-/// Ends of a pipe above the standard files. The flag O_CLOEXEC is set at creation, because other threads start
-/// programs.
+/// Both ends of a pipe, with numbers above the standard files. The flag O_CLOEXEC is set when the pipe is created,
+/// because another thread may start a program at any time.
 struct Pipe {
   Descriptor to_read;
   Descriptor to_write;
 };
 std::optional<Pipe> open_pipe();
 
-/// Writes all of `text`, also if signals interrupt. Returns false, with errno, after an error.
+/// Writes all of `text`, even if signals interrupt the writing. Returns false and sets errno after an error.
 bool write_all(const Descriptor& to, std::string_view text);
 
 /// Returns the environment of this process, one "NAME=VALUE" per variable.
@@ -64,16 +64,17 @@ struct Program {
   std::vector<std::string> words;                            ///< name and arguments, not interpreted by a shell
   std::string file{};                                        ///< executable; if empty, the name is searched on PATH
   std::vector<std::string> environment = own_environment();  ///< if a name occurs twice, its first value is used
-  /// Whether the program has its own process group. Then it gets no signals of the terminal, and has the default signal
-  /// handling. Otherwise Ctrl-C ends it, and it ignores the signals that this process ignores, except SIGPIPE and
-  /// SIGXFSZ.
+  /// Whether the program has its own process group. If so, it gets no signals of the terminal, and has the default
+  /// signal handling. If not, Ctrl-C ends the program, and it ignores the signals that this process ignores, except
+  /// SIGPIPE and SIGXFSZ.
   bool own_group = true;
   std::string folder{};  ///< working folder; if empty, the current one
 };
 
 /// Starts a program whose only open files are `files`, with the numbers 0, 1, 2, .... Each number in `files` must be
-/// larger than its new number. Returns the process id, for which the caller has to wait, or -1 with errno; ENOENT means
-/// no such program. Use this function for a dialogue with a program, otherwise ChildProcess.
+/// larger than its new number. Returns the process id, or -1 and sets errno; ENOENT means that there is no such
+/// program. The caller must wait for the process (waitpid()). Use this function to exchange messages with a running
+/// program, and ChildProcess otherwise.
 pid_t spawn(const Program& program, const std::vector<int>& files);
 
 /// Child process whose output is read until its end.
@@ -82,17 +83,18 @@ class ChildProcess {
   /// Writes a text to the parent at once. If the parent has ended, the child ends.
   using Say = std::function<void(std::string_view text)>;
 
-  /// Forks a child that runs `work` and ends with its return value as the exit status, without destructors; `work` may
-  /// call std::exit(), which runs them. An exception of `work` ends the child by SIGABRT. The child has its own process
-  /// group, because this process handles the signals of the terminal. The child is killed when this process or the
-  /// calling thread ends. Returns null, with errno, if no process can be created.
+  /// Forks a child that runs `work` and then exits with the return value of `work`, without running destructors of
+  /// static objects. `work` may call std::exit(), which runs these destructors. An exception of `work` ends the child
+  /// by SIGABRT. The child has its own process group, because this process handles the signals of the terminal. The
+  /// child is killed when this process or the calling thread ends. Returns null and sets errno if no process can be
+  /// created.
   static std::unique_ptr<ChildProcess> fork(const std::function<int(const Say& say)>& work);
 
-  /// Starts `program` with `input` as its stdin. Its stdout and stderr are the child's output. The program survives
-  /// this process. Returns null, with errno, as spawn() does.
+  /// Starts `program` with `input` as its stdin. Its stdout and stderr are the child's output. The program continues if
+  /// this process ends. Returns null and sets errno if the program cannot be started.
   static std::unique_ptr<ChildProcess> start(const Program& program, std::string_view input = {});
 
-  /// Kills the child if it has not ended, and reaps it.
+  /// Kills the child if it has not ended, and waits for its end.
   ~ChildProcess();
   ChildProcess(const ChildProcess&) = delete;
   ChildProcess& operator=(const ChildProcess&) = delete;
@@ -101,7 +103,8 @@ class ChildProcess {
   /// the output. Ignores children that have ended.
   static void listen(const std::vector<ChildProcess*>& children, double seconds);
 
-  /// Waits for the end of the child for up to `seconds`, also if signals interrupt. Returns whether it has ended.
+  /// Waits for the end of the child for up to `seconds`; signals do not shorten the wait. Returns whether the child has
+  /// ended.
   bool wait(double seconds = std::numeric_limits<double>::infinity());
 
   bool ended() const { return pid_ < 0; }

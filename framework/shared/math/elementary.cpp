@@ -13,23 +13,24 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kMostAngle = 1e9;
 constexpr double kPi = 0x1.921fb54442d18p1;
 constexpr double kPiLow = 0x1.1a62633145c07p-53;  // kPi + kPiLow is pi to twice the precision
-// ln 2 as a sum of two numbers. The first has 32 bits, so that its product with an exponent is exact.
+// ln 2 as a sum of two numbers. The first number has 32 significant bits, so its product with an exponent is exact.
 constexpr double kLog2 = 0x1.62e42feep-1;
 constexpr double kLog2Low = 0x1.a39ef35793c76p-33;
 
-/// A number as a sum of two, where |low| is at most half of the last place of `high`.
+/// A number as the unevaluated sum of two doubles. |low| is at most half of a unit in the last place of `high`.
 struct Pair {
   double high;
   double low;
 };
 
-/// Returns a + b exactly, for |a| >= |b|.
+/// Returns the exact sum a + b, for |a| >= |b|.
 Pair sum(double a, double b) {
   const double high = a + b;
   return {high, b - (high - a)};
 }
 
-/// Returns a b exactly, for numbers below 1e150 (Dekker 1971). Some processors lack a fused multiplication.
+/// Returns the exact product a * b, for |a| and |b| below 1e150 (Dekker 1971). Does not use fused multiply-add, which
+/// some processors lack.
 Pair product(double a, double b) {
   const auto half = [](double x) {
     const double scaled = 134217729.0 * x;  // 2^27 + 1
@@ -43,7 +44,7 @@ Pair product(double a, double b) {
   return {high, ((a_high * b_high - high) + a_high * b_low + a_low * b_high) + a_low * b_low};
 }
 
-/// Returns the sum of c_i x^i.
+/// Returns the sum of coefficients[i] * x^i.
 template <std::size_t kCount>
 double polynomial(const double (&coefficients)[kCount], double x) {
   double out = 0.0;
@@ -91,7 +92,7 @@ Pair log_of(double x) {
   const double s_low = ((f - back.high) - back.low - s * below.low) / below.high;
   Pair square = product(s, s);
   square.low += 2.0 * s * s_low;
-  // The terms 2 s and 2 / 3 s^3 are computed in both parts. The later terms are small.
+  // The terms 2 s and 2/3 s^3 are computed as Pairs. The later terms are small, so they are computed as doubles.
   Pair third = product(square.high, kArtanh[0]);
   third.low += square.low * kArtanh[0] + square.high * 0x1.5555555555555p-55;  // low part of 2 / 3
   static constexpr double kRest[] = {2.0 / 5,  2.0 / 7,  2.0 / 9,  2.0 / 11, 2.0 / 13, 2.0 / 15,
@@ -102,7 +103,8 @@ Pair log_of(double x) {
   Pair out = sum(2.0 * s, beyond.high);
   out.low += 2.0 * s_low + beyond.low;
   const Pair all = sum(exponent * kLog2, out.high);
-  // With exponent 0 the first term is 0 and the smaller one. The sum is exact in this case, too.
+  // For the exponent 0, the first argument of this sum is 0, so it is smaller than the second. The sum is exact in this
+  // case, too.
   return sum(all.high, all.low + out.low + exponent * kLog2Low);
 }
 
@@ -113,7 +115,8 @@ struct Reduced {
 };
 Reduced reduce(double x) {
   if (!(std::abs(x) <= kMostAngle)) return {0, {kNaN, kNaN}};
-  // pi / 2 as a sum of three numbers. The first two have 33 bits, so that products with n < 2^20 are exact.
+  // pi / 2 as a sum of three numbers. The first two numbers have 33 significant bits, so their products with n < 2^20
+  // are exact.
   constexpr double kHalf[] = {0x1.921fb544p0, 0x1.0b4611a6p-34, 0x1.3198a2e037073p-69};
   const double n = std::nearbyint(x * 0x1.45f306dc9c883p-1);  // 2 / pi
   const double first = x - n * kHalf[0];
@@ -164,7 +167,8 @@ double log(double x) {
   const double s = f / (2.0 + f);
   const double square = s * s;
   const double half = 0.5 * f * f;
-  // 2 s = f - s f and s f = half - s half. So the difference from f has an error far below the last place of f.
+  // 2 s = f - s f and s f = half - s half. So the error of the term that is subtracted from f is far below the last
+  // place of f.
   return exponent * kLog2 - ((half - (s * (half + square * polynomial(kArtanh, square)) + exponent * kLog2Low)) - f);
 }
 
@@ -230,8 +234,8 @@ double erfc(double x) {
     }
     return 1.0 - 2.0 / kRootPi * erf;
   }
-  // Trapezoidal rule of step h for Abramowitz and Stegun 7.4.11, with the contribution of the pole at x (Matta and
-  // Reichel, Mathematics of Computation 25, 1971). The relative error is e^(-pi^2 / h^2) = 7e-18.
+  // Trapezoidal rule with the step h for the integral of Abramowitz and Stegun 7.4.11, plus the contribution of the
+  // pole at x (Matta and Reichel, Mathematics of Computation 25, 1971). The relative error is e^(-pi^2 / h^2) = 7e-18.
   constexpr double kStep = 0.5;
   double sum = 0.5 / (x * x);
   for (int n = 1; n <= 13; ++n) {

@@ -14,11 +14,11 @@ namespace {
 HWY_INLINE Vector exponential(Vector x) {
   x = hn::IfThenElse(hn::Lt(x, all(-708.0)), all(-708.0), x);
   const Vector bounded = hn::IfThenElse(hn::Gt(x, all(709.0)), all(709.0), x);  // so that 2^n is finite
-  // A number of this size has its integer part, n + 1023, in its last bits: the exponent of 2^n.
+  // A sum with this constant has the integer n + 1023 in its last bits. This integer is the biased exponent of 2^n.
   const Vector shift = all(0x1.8p52 + 1023.0);
   const Vector shifted = hn::MulAdd(bounded, all(0x1.71547652b82fep0), shift);  // 1 / ln 2
   const Vector n = hn::Sub(shifted, shift);
-  // ln 2 as a sum of two numbers, of which the first is short, so that its product with n is exact.
+  // ln 2 as a sum of two numbers. 0x1.62e42feep-1 has 32 significant bits, so its product with n is exact.
   const Vector r = hn::NegMulAdd(n, all(0x1.a39ef35793c76p-33), hn::NegMulAdd(n, all(0x1.62e42feep-1), x));
   Vector sum = all(1.0 / 6227020800);
   for (const double coefficient : {1.0 / 479001600, 1.0 / 39916800, 1.0 / 3628800, 1.0 / 362880, 1.0 / 40320,

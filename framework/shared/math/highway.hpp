@@ -3,11 +3,13 @@
 // defines HWY_TARGET_INCLUDE as its own path and includes this header. Highway includes the file once per set, so this
 // header has no include guard. The loops are in HWY_NAMESPACE, and PALPATE_DISPATCH(function)(arguments) calls them.
 //
-// Only Highway's headers are used. Its library also selects a set, but measures clocks when it is loaded, which takes a
-// fifth of a short run. The assertions of debug builds need the library, so they are switched off.
+// Only Highway's headers are used. Highway's library could select the set, too, but it measures clocks when it is
+// loaded, which takes a fifth of a short run. The assertions of debug builds need the library, so they are switched
+// off.
 //
-// The sets are AVX2 and AVX-512 (AVX3 in Highway) on x86, and the baseline of the architecture, on 64-bit ARM NEON. SVE
-// is not used, because the size of its vectors is unknown to the compiler, so arrays of them do not compile.
+// The sets on x86 are the baseline SSE2, AVX2 and AVX-512 (AVX3 in Highway). The only set on 64-bit ARM is NEON, its
+// baseline. SVE is not used, because the size of its vectors is unknown to the compiler, so arrays of them do not
+// compile.
 #ifndef PALPATE_DISPATCH
 #define HWY_IS_DEBUG_BUILD 0
 #ifdef __aarch64__
@@ -17,7 +19,7 @@
 #endif
 #include <hwy/detect_targets.h>
 #ifndef HWY_SSE2
-#define HWY_SSE2 0LL  // Highway defines it from version 1.1 on
+#define HWY_SSE2 0LL  // older versions than Highway 1.1 do not define it
 #endif
 #define PALPATE_DISPATCH(function)                                                          \
   (*::palpate::math::version_of<decltype(&HWY_STATIC_DISPATCH(function))>(                  \
@@ -27,7 +29,7 @@
 #include "math/instructions.hpp"
 
 #include <hwy/foreach_target.h>
-// Highway requires this order.
+// Highway requires that foreach_target.h is included before highway.h.
 #include <hwy/highway.h>
 
 // Vectors of doubles in each set's HWY_NAMESPACE.

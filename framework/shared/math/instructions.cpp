@@ -10,7 +10,8 @@
 namespace palpate {
 namespace {
 
-/// Returns the widest set of the processor. The conditions are those of Highway for its targets (math/highway.hpp).
+/// Returns the widest set of the processor. Highway requires the same processor features for its targets
+/// (math/highway.hpp).
 Instructions widest() {
 #if defined(__x86_64__)
   const bool avx2 = __builtin_cpu_supports("avx2") != 0 && __builtin_cpu_supports("fma") != 0 &&

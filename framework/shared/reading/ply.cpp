@@ -21,8 +21,8 @@ std::size_t size_of(const std::string& type) {
 }
 
 struct Property {
-  std::size_t count_size = 0;  ///< bytes of a list's number of items; 0 if not a list
-  std::size_t size = 0;        ///< bytes per item
+  std::size_t count_size = 0;  ///< size of the number that counts a list's items, bytes; 0 if not a list
+  std::size_t size = 0;        ///< size of an item of the list, or of the only value, bytes
 };
 
 struct Element {
@@ -98,7 +98,7 @@ class Splitter {
     return true;
   }
 
-  /// The last row may lack its line end.
+  /// Removes one row. The last row of the file may lack its line end.
   bool read_ascii_row() {
     if (rest_.empty()) return false;
     if (!take_line()) rest_ = {};

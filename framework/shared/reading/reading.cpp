@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 namespace {
 
 Reading failed(int reason) {
-  // Only these errors mean that there is no such file. Missing permissions, for example, are a failure.
+  // Only these errors mean that there is no such file. All other errors, for example missing permissions, are failures.
   const bool absent = reason == ENOENT || reason == ENOTDIR || reason == ENAMETOOLONG;
   return {absent ? Reading::Kind::absent : Reading::Kind::failed, {}, {reason, std::generic_category()}};
 }
@@ -29,7 +29,8 @@ bool is_link(const fs::path& path) {
   return ::lstat(path.c_str(), &what) == 0 && S_ISLNK(what.st_mode);
 }
 
-/// Returns whether the path of a job's file, jobs/<id>/NAME, contains a link. Files of a sweep are within its folder.
+/// Returns whether jobs/ or jobs/<id>/ is a link in the path jobs/<id>/NAME of a job's file. All files of a sweep must
+/// be within its own folder.
 bool job_is_linked(const fs::path& file) {
   constexpr std::size_t kIdLength = 12;
   const fs::path job = file.parent_path();
@@ -44,7 +45,7 @@ Reading read_descriptor(int number, std::uintmax_t size, std::uintmax_t most_byt
   Reading out{Reading::Kind::whole, {}};
   if (size > most_bytes) return {Reading::Kind::too_large, {}};
   std::string& text = out.text;
-  text.resize(size + 1);  // one byte more, so that one read() finds the end of the file
+  text.resize(size + 1);  // one byte more, so that `text` need not grow before a read() finds the end of the file
   for (std::size_t read = 0;;) {
     const ssize_t more = ::read(number, text.data() + read, text.size() - read);
     if (more < 0 && errno == EINTR) continue;

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Reads files from outside: records, configs, meshes, point clouds, tables and files of /proc. Opens regular files
-// only, reads at most a given number of bytes, and follows no link in a record.
+// Reads all files that come from outside of the program: records, configs, meshes, point clouds, tables and files of
+// /proc. The functions open regular files only, read at most a given number of bytes, and do not follow links in a
+// record.
 //
-// Framework and shipped plugins use these functions. They open no file for reading, and list no folder, in any other
-// way (tests/habits.sh).
+// Framework and shipped plugins read files and list folders only with these functions; tests/habits.sh checks this
+// rule.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +17,7 @@
 
 namespace palpate {
 
-/// Limits of file sizes in bytes. Each limit is a multiple of the largest size that palpate writes or documents.
+/// Limits of file sizes in bytes. Each limit is several times the largest size that palpate writes or documents.
 constexpr std::uintmax_t kMostConfigBytes = std::uintmax_t{1} << 20;     ///< a config or a file of a group
 constexpr std::uintmax_t kMostManifestBytes = std::uintmax_t{64} << 20;  ///< a line of a record that contains lists
 constexpr std::uintmax_t kMostLogBytes = std::uintmax_t{512} << 20;      ///< all lines of a record or of a sweep
@@ -28,8 +29,8 @@ constexpr std::uintmax_t kMostSystemBytes = std::uintmax_t{16} << 20;  ///< a fi
 
 /// Source of a file's name.
 enum class Origin {
-  user,   ///< a command line, a config of the user, or the installation: links are followed
-  record  ///< a record, which may come from another user: links, also to the folder of a job, are not followed
+  user,   ///< the name is from a command line, a config of the user, or the installation: links are followed
+  record  ///< the file is in a record, maybe of another user: links, even to the folder of a job, are not followed
 };
 
 /// Result of reading a file.
@@ -44,18 +45,19 @@ struct Reading {
   };
 
   Kind kind = Kind::absent;
-  std::string text;          ///< content, if whole
-  std::error_code reason{};  ///< error, if absent or failed
-  std::uintmax_t begin = 0;  ///< position of the text in the file, bytes
+  std::string text;          ///< content of the file, if `kind` is `whole`
+  std::error_code reason{};  ///< error of the file system, if `kind` is `absent` or `failed`
+  std::uintmax_t begin = 0;  ///< position in the file at which `text` begins, bytes
 
   explicit operator bool() const { return kind == Kind::whole; }
 };
 
-/// Reads a file of at most `most_bytes`. Never blocks on a pipe and opens no device. Throws only std::bad_alloc.
+/// Reads a whole file, which must have at most `most_bytes`. Never blocks on a pipe and opens no device. Throws only
+/// std::bad_alloc.
 Reading read_bounded(const std::filesystem::path& file, std::uintmax_t most_bytes, Origin origin);
 
-/// Read the first, or the last, `bytes` of a file of at most kMostLogBytes; a shorter file is read as a whole.
-/// Otherwise they behave like read_bounded().
+/// Read the first, or the last, `bytes` of a file of at most kMostLogBytes. A file with fewer bytes is read as a whole.
+/// In all other respects, these functions behave like read_bounded().
 Reading read_begin_bounded(const std::filesystem::path& file, std::uintmax_t bytes, Origin origin);
 Reading read_end_bounded(const std::filesystem::path& file, std::uintmax_t bytes, Origin origin);
 
@@ -67,11 +69,12 @@ struct ReadingWords {
   std::string reason;
   std::string remedy;
 };
-/// Returns reason and remedy for a reading that is not whole. `most_bytes` is the limit of the reading.
+/// Returns reason and remedy for a reading whose kind is not `whole`. `most_bytes` is the limit with which the file was
+/// read.
 ReadingWords words_of(const Reading& reading, std::uintmax_t most_bytes);
 
-/// Returns the paths in a folder, sorted, without "." and "..". Returns none and sets `trouble` if the folder cannot be
-/// listed.
+/// Returns the paths in a folder, sorted, without "." and "..". Returns an empty list and sets `trouble` if the folder
+/// cannot be listed.
 std::vector<std::filesystem::path> list_folder(const std::filesystem::path& folder, std::error_code& trouble);
 std::vector<std::filesystem::path> list_folder(const std::filesystem::path& folder);
 

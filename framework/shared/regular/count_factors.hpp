@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Counts factorisations in the state of a belief.
+// Adds the diagnostics of factorisations to the state of a belief.
 #pragma once
 
 #include "regular/regular_factor.hpp"
@@ -10,8 +10,9 @@
 
 namespace palpate {
 
-/// Adds the numerical diagnostics of one model to the state; the jitter is a variance, in the squared unit of the
-/// model. All models have the same taps, so a tap that several models leave out counts once.
+/// Adds the numerical diagnostics of one model to the state. The jitter is a variance, in the squared unit of the
+/// model's values. All models have the same taps, so a redundant tap counts only once, even if several models leave it
+/// out.
 inline void count_factors(BeliefState& state, const FactorReport& factors) {
   state.jitter_max = std::max(state.jitter_max, factors.jitter);
   state.diagnostics["jitter"] += factors.raised;

@@ -30,7 +30,7 @@ std::vector<int> independent_rows(const Eigen::MatrixXd& covariance) {
   return order;
 }
 
-/// Factorises a matrix with its jitter. Returns whether all pivots are regular.
+/// Factorises a matrix that includes the jitter. Returns whether all pivots are regular.
 bool RegularFactor::try_rows(const Eigen::MatrixXd& matrix) {
   factor_.compute(matrix);
   if (factor_.info() != Eigen::Success) return false;
@@ -55,7 +55,8 @@ void RegularFactor::factorise(const Eigen::MatrixXd& matrix) {
   const auto pivot = [&] {
     const Eigen::MatrixXd all = with_jitter().selfadjointView<Eigen::Lower>();
     rows_ = independent_rows(all);
-    // The pivots of both factorisations differ by rounding. Rows are removed from the end until the second succeeds.
+    // The pivots of independent_rows() and try_rows() differ by rounding. Rows are removed from the end until
+    // try_rows() succeeds.
     while (!rows_.empty() && !try_rows(all(rows_, rows_))) rows_.pop_back();
     if (rows_.empty()) factor_.compute(Eigen::MatrixXd(0, 0));
     report_.redundant_taps = static_cast<int>(size_) - static_cast<int>(rows_.size());

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Cholesky factors of covariances that may be singular in double precision. All rules for rounding are here: rejection
-// of pivots, amounts of jitter, and rows that are left out if no jitter helps. GPs, the outlier model, the belief from
-// any side, fits and the GP classifier use them.
+// Cholesky factors of covariances that may be singular in double precision. This file has all rules for rounding: when
+// a pivot is rejected, how much jitter (variance on the diagonal) is added, and which rows are left out if no jitter
+// helps. GPs, the outlier model, the belief `solids`, fits and the GP classifier use these rules.
 #pragma once
 
 #include <palpate/math.hpp>
@@ -18,42 +18,42 @@ namespace palpate {
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
-/// Factor in the bound of a pivot's rounding error. The pivot d^2 = diagonal - l.l has an error of up to about (n + 1)
-/// eps diagonal (Higham, Accuracy and Stability of Numerical Algorithms, 2002, section 10.1). A smaller pivot has no
-/// correct digit.
+/// Factor in the bound of a pivot's rounding error. The squared pivot d^2 = diagonal - l.l has an error of up to about
+/// (n + 1) * eps * diagonal (Higham, Accuracy and Stability of Numerical Algorithms, 2002, section 10.1). A squared
+/// pivot below this error has no correct digit.
 constexpr double kPivotGuard = 1.0;
 
-/// First and last amount of jitter, in units of n eps times the largest diagonal entry. The first is larger than
-/// rounding errors. The last is negligible in results, 100 n eps = 4e-13 for 17 rows. If a matrix is not positive
-/// definite even with the last amount, rounding is not the cause.
+/// First and last amount of jitter, in units of n * eps times the largest diagonal entry. The first amount is larger
+/// than rounding errors. The last amount is negligible in results: 100 * n * eps = 4e-13 for 17 rows. If a matrix is
+/// not positive definite even with the last amount, rounding is not the cause.
 constexpr double kFirstJitter = 10.0;
 constexpr double kLastJitter = 100.0;
 
-/// Smallest noise variance, in the same units, for quadratic forms with an explicit inverse. The entries of the inverse
-/// reach 1 / noise, and the form is a small difference of their products. Its relative error is up to n eps / noise of
-/// the largest diagonal entry, here 1e-5.
+/// Smallest noise variance, in the same units, for quadratic forms that are computed with an explicit inverse. The
+/// entries of the inverse reach 1 / noise, and a quadratic form is a small difference of their products. With this
+/// noise variance, the error of the form is at most 1e-5 of the largest diagonal entry.
 constexpr double kInverseNoise = 1e5;
 
-/// Returns whether `square`, the square of pivot `row` (from 0) of a matrix with this diagonal entry, is above
-/// rounding. False for NaN.
+/// Returns whether `square` is larger than its rounding error. `square` is the squared pivot of row `row` (counted from
+/// 0), whose diagonal entry in the matrix is `diagonal`. Returns false for NaN.
 inline bool is_regular(double square, Eigen::Index row, double diagonal) {
   return square > kPivotGuard * static_cast<double>(row + 1) * kEpsilon * diagonal;
 }
 
-/// Returns the rows of `covariance` (symmetric, n x n) that are independent in double precision. Their order is that of
-/// a Cholesky factorisation with diagonal pivoting: the row with the largest residual variance is next. Rows whose
-/// pivot is not above rounding, or NaN, are left out.
+/// Returns the rows of `covariance` (symmetric, n x n) that are independent in double precision. The order is that of a
+/// Cholesky factorisation with diagonal pivoting: the next row is always the row with the largest residual variance.
+/// Rows whose pivot is NaN or not larger than its rounding error are left out.
 std::vector<int> independent_rows(const Eigen::MatrixXd& covariance);
 
-/// Numerical diagnostics of the factorisations of one model, for the record. If a model is factorised again at every
-/// tap, every factorisation counts.
+/// Numerical diagnostics of the factorisations of one model, for the record. If the covariance of a model is factorised
+/// again at every tap, the counts include every factorisation.
 struct FactorReport {
-  double jitter = 0.0;     ///< current variance added to the diagonal besides the noise, in the unit of the matrix
+  double jitter = 0.0;     ///< variance currently added to the diagonal besides the noise, unit of the matrix
   int raised = 0;          ///< number of increases of the jitter
   int pivoted = 0;         ///< number of factorisations of independent rows, because no jitter helped
   int redundant_taps = 0;  ///< number of rows that are currently left out
 
-  /// Adds the counts of another model of the same rows. Jitter and redundant taps become the maximum of both.
+  /// Adds the counts of another model that has the same rows. Jitter and redundant taps become the maximum of both.
   void add(const FactorReport& other) {
     jitter = std::max(jitter, other.jitter);
     raised += other.raised;
@@ -62,9 +62,9 @@ struct FactorReport {
   }
 };
 
-/// Factorises n rows with the least sufficient jitter. attempt() factorises with the report's jitter and returns
-/// whether all rows entered. The jitter starts at that of the report. If the last amount fails, calls pivot(), which
-/// factorises the independent rows. `scale` is the largest diagonal entry.
+/// Factorises n rows with the smallest sufficient amount of jitter. attempt() factorises with report.jitter and returns
+/// whether all pivots are regular. While attempt() fails, the jitter is increased. If attempt() fails with the last
+/// amount, pivot() is called, which factorises only the independent rows. `scale` is the largest diagonal entry.
 template <class Attempt, class Pivot>
 void regularise(FactorReport& report, Eigen::Index n, double scale, const Attempt& attempt, const Pivot& pivot) {
   const double unit = static_cast<double>(n) * kEpsilon * scale;
@@ -82,8 +82,8 @@ void regularise(FactorReport& report, Eigen::Index n, double scale, const Attemp
 /// Cholesky factor L of a matrix, L L^T = K + jitter, over all rows or the independent rows.
 class RegularFactor {
  public:
-  /// Factorises a symmetric matrix, noise included, from its lower half. Jitter starts at 0; the counts of the report
-  /// continue. Never throws. If no row is finite, all rows are left out.
+  /// Factorises a symmetric matrix, which includes the noise, from its lower half. The jitter starts again at 0, but
+  /// the counts of the report continue. Never throws. If no row is finite, all rows are left out.
   void factorise(const Eigen::MatrixXd& matrix);
 
   Eigen::Index size() const { return size_; }
@@ -120,7 +120,7 @@ class RegularFactor {
   bool try_rows(const Eigen::MatrixXd& matrix);
 
   Eigen::Index size_ = 0;
-  std::vector<int> rows_;  ///< rows of the factor, in its order; used only if some were left out
+  std::vector<int> rows_;  ///< rows of the matrix in the order of the factor; used only if rows were left out
   Eigen::LLT<Eigen::MatrixXd> factor_;
   FactorReport report_;
 };

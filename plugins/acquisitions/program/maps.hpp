@@ -16,7 +16,8 @@ namespace palpate::program {
 struct Map {
   const char* name;
   QuantitySet reads;
-  std::string (*npy)(const BeliefView& belief, double desk);  ///< returns an NPY file; `desk`: its height, metres
+  /// returns an NPY file; `desk`: height of the desk, metres
+  std::string (*npy)(const BeliefView& belief, double desk);
 };
 
 /// Returns all arrays that programs can read.
@@ -27,7 +28,7 @@ const Map* find_map(const std::string& name);
 /// Returns the length of the header that follows the first kNpyStart bytes of an NPY file. Throws std::runtime_error
 /// unless the bytes start an NPY file of version 1. The message continues the text "the program answered with ".
 std::size_t header_length(const std::string& start);
-/// Throws std::runtime_error with such a message unless the header describes `count` numbers of type '<f8'.
+/// Throws std::runtime_error with a message of this form unless the header describes `count` numbers of type '<f8'.
 void check_header(const std::string& text, Eigen::Index count);
 
 }  // namespace palpate::program

@@ -73,8 +73,7 @@ std::set<std::string> declarations(const std::string& program) {
   return out;
 }
 
-/// Returns a text with the names of all arrays: "uncertainty, label_mean (from above); uncertainty, surface_std (from
-/// any side)".
+/// Returns the names of all arrays, separated by commas: "uncertainty, label_mean, ...".
 std::string all_names() {
   std::vector<const char*> names;
   for (const program::Map& one : program::maps()) names.push_back(one.name);

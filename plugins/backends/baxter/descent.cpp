@@ -16,22 +16,25 @@ namespace {
 using tapping::newtons;
 using Then = Fault::Then;
 
-/// Upper limit of consecutive readings of a pull until it is a fault. The count is kPullTime seconds of new readings,
-/// within these limits.
+/// A pull is a fault after kPullTime seconds of consecutive new readings. These are at least kFewestPullReadings and at
+/// most kMostPullReadings readings.
 constexpr double kMostPullReadings = 6.0;
 constexpr double kFewestPullReadings = 3.0;
 constexpr double kPullTime = 0.12;
 constexpr double kEvenFrom = 0.7;  ///< s until an arm that lags 0.35 s behind its set-point descends at constant speed
-constexpr double kEvenTo = 1.0;    ///< s: end of the average of the force, or later until it has kFewestEven readings
+/// s: end of the average of the force; later if there are fewer than kFewestEven readings
+constexpr double kEvenTo = 1.0;
 constexpr std::size_t kFewestEven = 10;
-/// Conditions for an arm that falls behind without a contact. A blocked arm presses with at least half of stiffness
-/// times lag, and the measured force must exceed the threshold by kBlockedForce (N). A lag below kLeastLag (m) may come
-/// from a posture that sags more.
+/// Conditions for an arm that falls behind without a contact. A blocked arm presses with at least 0.5 * stiffness *
+/// lag. This force must exceed the threshold by kBlockedForce (N), although the measured force is small. A lag below
+/// kLeastLag (m) may come from a posture that sags more.
 constexpr double kBlockedForce = 2.0;
 constexpr double kLeastLag = 0.003;
-constexpr int kQuietReadings = 3;  ///< consecutive readings within half the threshold; the start of a contact has fewer
-constexpr double kSteadyForce = 1.5;      ///< N between the means of both halves; noise of 1.5 N causes 0.55 N
-constexpr double kLeastZeroChange = 2.5;  ///< N: least limit of the zero's change in a tap; noise causes 0.4 N
+constexpr int kQuietReadings = 3;  ///< number of consecutive readings near the zero that exclude the start of a contact
+/// N, largest difference between the means of both halves; noise of 1.5 N causes 0.55 N
+constexpr double kSteadyForce = 1.5;
+/// N: smallest limit of the change of the force zero during a tap; noise causes 0.4 N
+constexpr double kLeastZeroChange = 2.5;
 
 /// Mean force along z while the arm descends at constant speed and lags behind its set-point. Gives no result if the
 /// force rises meanwhile, because a contact may begin.
@@ -56,7 +59,8 @@ class EvenDescent {
   bool done_ = false;
 };
 
-/// Periods with a constant speed of descent: all up to now, and all up to the last detection.
+/// Control periods in which the arm descends at constant speed: all until now, and all until the last detection of a
+/// contact.
 struct EvenPeriods {
   std::vector<ReactionTime::Period> now;
   std::vector<double> lags;  ///< m by which the tip trails its set-point in each period
@@ -65,7 +69,7 @@ struct EvenPeriods {
   int noticed = 0;
   double begin = 0.0;  ///< s
 
-  /// Adds a period. `even_for`: seconds since the set-point descends at constant speed; 0 if it does not.
+  /// Adds a period. `even_for`: seconds for which the set-point has descended at constant speed; 0 if it does not.
   void add(const ReactionTime::Period& period, double set_point, double even_for) {
     if (even_for < kEvenFrom) clear();
     if (even_for < kEvenFrom || period.time < begin) return;
@@ -78,7 +82,7 @@ struct EvenPeriods {
     now.clear();
     lags.clear();
   }
-  /// Starts again after a change of speed at `time`, as soon as the arm descends at constant speed.
+  /// Discards all periods after a change of speed at `time`. Adds new periods once the arm descends at constant speed.
   void restart(double time) {
     clear();
     begin = time + kEvenFrom;
@@ -98,7 +102,7 @@ struct EvenPeriods {
 };
 
 /// Guarded tap for an unknown sign of the force. Two taps, one per sign, run in parallel until one of them detects a
-/// contact. That tap continues, and its sign is the robot's if the contact is accepted.
+/// contact. That tap continues. If its contact is accepted, its sign is adopted as that of the robot.
 class SignedTap {
   struct One {
     double sign;
@@ -113,7 +117,7 @@ class SignedTap {
     taps_ = sign != 0.0 ? std::vector<One>{{sign, tap}} : std::vector<One>{{-1.0, tap}, {1.0, tap}};
   }
 
-  /// Calls GuardedTap::next() with the force as the robot reports it.
+  /// Calls GuardedTap::next() for each sign. `force`: force along z as the robot reports it, N.
   double next(double height, double force, bool fresh) {
     for (One& one : taps_) one.set_point = one.tap.next(height, one.sign * force, fresh);
     if (taps_.size() == 2 && taps_.front().set_point != taps_.back().set_point) {
@@ -157,7 +161,7 @@ struct Tapper::DescentState {
   std::optional<double> moving = {};  ///< N along z: force of a free descent minus force at rest
   EvenPeriods periods = {};
   int pulled = 0;  ///< number of consecutive readings with a pull
-  int quiet = 0;   ///< number of consecutive readings within half the threshold
+  int quiet = 0;   ///< number of consecutive readings that differ from the zero by less than half the threshold
 
   Joints at(double height) const { return column.at(plan.hover + kFromAbove - height); }
 };
@@ -206,8 +210,8 @@ void Tapper::update(DescentState& way) {
   }
   if (way.set_point < before) guard_.expect_rise(std::nullopt);
   if (way.set_point != before) way.goes_up = way.set_point > before;
-  // A set-point at the height of the arm means to stop. The measured joints as the command stop every joint, not only
-  // the tip.
+  // A set-point at the height of the arm is a request to stop. The command is then the measured joints, which stops
+  // every joint and not only the tip.
   if (way.set_point == height() && way.set_point != before) {
     way.command = seen_.joints->position;
   } else if (way.set_point != before) {
@@ -267,14 +271,14 @@ void Tapper::evaluate_force(DescentState& way, double felt, double beside, bool 
   } else {
     guard_.set_tare({zero_.x(), zero_.y(), zero + beside});
   }
-  // The force of motion is measured once, high above the desk. Lower down, the bias of another pose would count as
-  // force of motion; near the expected surface, so would a soft contact.
+  // The force of motion is measured once, high above the desk. Lower down, the bias of another pose would be counted as
+  // force of motion. Near the expected surface, a soft contact would be counted, too.
   if (!way.moving && way.plan.start >= way.plan.hover) {
     const auto mean = way.even.add(way.tap.tap().even_for(), seen_.endpoint->force.z());
     if (mean) way.moving = *mean - zero_.z();
     if (mean) last_moving_ = {std::abs(*way.moving), way.speed};
   }
-  // Friction of a rising arm has the opposite sign, so only a descent counts.
+  // Friction of a rising arm has the opposite sign, so only readings during a descent count.
   way.pulled = coming_down && sign_ * (felt - zero) < -way.motion.threshold ? way.pulled + 1 : 0;
   if (way.pulled < std::clamp(kPullTime / guard_.renewals().seconds(), kFewestPullReadings, kMostPullReadings)) return;
   throw Fault{
@@ -282,8 +286,9 @@ void Tapper::evaluate_force(DescentState& way, double felt, double beside, bool 
       Then::retreat};
 }
 
-/// Accepts the contact if the force at rest is the same as before the tap. The limit is larger sideways, where the
-/// robot's estimate is worst. Learns from an accepted contact.
+/// Accepts the contact if the force at rest is the same as before the tap. The limit is larger for sideways forces,
+/// where the robot's estimate is worst. An accepted contact updates the estimates of the reaction time and of the force
+/// of motion.
 tapping::HeightResult Tapper::accept(const DescentState& way, const tapping::HeightResult& contact) {
   rest_from_above(way.column);
   const Eigen::Vector3d moved = force_at_rest(way.at(way.plan.hover)) - way.at_hover;

@@ -12,12 +12,12 @@ namespace {
 
 using Then = Fault::Then;
 
-/// Returns the pull in N: the amount by which the force is below its zero, in the direction of a press.
+/// Returns the pull in N. A press changes the force in the direction `rise.sign`, a pull in the opposite direction.
 double pull_force(const MotionGuard::Rise& rise, const EndpointReading& endpoint) {
   return rise.sign * (rise.zero - endpoint.force.z());
 }
 
-/// Returns the fault of a caught tool. `reflex`: the firmware has stopped the arm, too.
+/// Returns the fault of a caught tool. `reflex`: whether the firmware has also stopped the arm.
 Fault caught_fault(double newtons, const Eigen::Vector3d& tip, bool reflex) {
   return {fmt::format("the tool is caught: it is pulled with {:.0f} N at ({:.1f}, {:.1f}, {:.1f}) cm of the scene. "
                       "Find what holds the tool, and free it by hand before the arm moves up again",

@@ -15,12 +15,13 @@ namespace {
 using tapping::newtons;
 using Then = Fault::Then;
 
-constexpr std::size_t kForceSamples = 25;        ///< new readings of the force at rest
-constexpr std::size_t kFewestForceSamples = 12;  ///< least number of readings, after kForcePatience
+constexpr std::size_t kForceSamples = 25;        ///< number of new readings for the force at rest
+constexpr std::size_t kFewestForceSamples = 12;  ///< minimum number of readings after kForcePatience
 constexpr double kForcePatience = 1.0;           ///< s
-constexpr double kMostForcePatience = 3.0;       ///< s
+constexpr double kMostForcePatience = 3.0;       ///< s; later the measurement has failed
 constexpr int kLoggedTaps = 3;                   ///< number of taps per run whose force of motion is logged
-constexpr double kMostMoving = 0.8;  ///< fraction of the threshold; a larger difference may be the onset of a contact
+/// limit of the force of motion, as a fraction of the threshold; a larger force may be the onset of a contact
+constexpr double kMostMoving = 0.8;
 
 /// Clearance in m at which a slow rise ends: the tool is free, and the friction of the joints has changed its
 /// direction.
@@ -28,14 +29,16 @@ constexpr double kClearance = 0.005;
 /// m of additional slow rise while the arm still presses, because an onset is inexact
 constexpr double kExtraRise = 0.01;
 constexpr double kReversalFriction = 1.4;  ///< ratio of friction during a reversal to friction at rest
-constexpr double kGentleSpeed = 0.01;      ///< m/s: a caught arm of 6.4 kN/m gains 2 N in three readings
-constexpr double kAcceleration = 0.15;     ///< m/s^2, after the slow rise
-/// Additional pull in N of a faster rise, from its speed and from a zero that changes by 50 N/m.
+/// m/s: an arm of 6.4 kN/m whose tool is caught pulls 2 N more within three readings
+constexpr double kGentleSpeed = 0.01;
+constexpr double kAcceleration = 0.15;  ///< m/s^2, after the slow rise
+/// Additional pull in N that a faster rise may show, because of its speed and of a zero that changes by 50 N/m.
 constexpr double kSpeedPull = 2.0;
-constexpr double kMovingNoise = 0.5;          ///< N: two standard deviations of the mean of 30 readings
-constexpr double kSmoothing = 0.2;            ///< weight of the last reading in a moving average of the force
-constexpr double kSpeedToRest = 0.015;        ///< m/s of the last centimetre before a rest, where no object is expected
-constexpr double kFirstThreshold = 5.0;       ///< N, until the first measured contact
+constexpr double kMovingNoise = 0.5;  ///< N: two standard deviations of the mean of 30 readings
+constexpr double kSmoothing = 0.2;    ///< weight of the last reading in a moving average of the force
+/// m/s, in the last centimetre before the arm rests; no object is expected there
+constexpr double kSpeedToRest = 0.015;
+constexpr double kFirstThreshold = 5.0;       ///< N, upper limit of the threshold until the first measured contact
 constexpr double kLargestFriction = 0.5;      ///< Nm per joint; more means that something touches the arm
 constexpr double kLargestStiffness = 8000.0;  ///< N/m, assumed for an unknown posture
 
@@ -79,8 +82,8 @@ double Tapper::stiffness_at(const Target& place) const {
   return out > 0.0 ? out : kLargestStiffness;
 }
 
-/// Returns the speed (m/s) at which no contact is expected to exceed ReactionTime::kGreatestForce. Throws Fault with
-/// the action `then` if this speed is too low for taps.
+/// Returns the greatest speed (m/s) at which the expected force of a contact is at most ReactionTime::kGreatestForce.
+/// Throws Fault with the action `then` if this speed is too low for taps.
 double Tapper::greatest_speed(double threshold, double stiffness, Then then) const {
   const double greatest = reaction_.greatest_speed(threshold, stiffness);
   if (greatest >= reaction_.slowest()) return greatest;
@@ -99,10 +102,11 @@ void Tapper::update_timing() {
   reaction_.renewed_every(guard_.renewals().seconds());
 }
 
-/// Returns `motion` with its speeds limited so that no contact is expected to exceed ReactionTime::kGreatestForce.
-/// Throws Fault if the limit is too low for taps.
+/// Returns `motion` with its speeds limited so that the expected force of a contact is at most
+/// ReactionTime::kGreatestForce. Throws Fault if the limit is too low for taps.
 tapping::MotionOptions Tapper::bounded(tapping::MotionOptions motion, double stiffness) const {
-  // Before the first measured contact, the delays of the slowest supported robot are assumed.
+  // Before the first measured contact, the delays of the slowest supported robot are assumed, and the threshold is
+  // lowered.
   if (!reaction_.measured()) {
     motion.threshold = std::min(motion.threshold, kFirstThreshold);
     motion.fine_threshold = std::min(motion.fine_threshold, motion.threshold);
@@ -118,8 +122,9 @@ tapping::MotionOptions Tapper::bounded(tapping::MotionOptions motion, double sti
   return motion;
 }
 
-/// Measures the friction of the joints once per run, in the air above the first column. The force at rest differs
-/// between descent and rise. By virtual work, a torque r in each joint contributes r times rotation_per_metre().
+/// Measures the friction of the joints once per run, in the air above the first tap. The force at rest after a descent
+/// differs from that after a rise. By the principle of virtual work, a friction torque of r in each joint changes the
+/// force by r * rotation_per_metre().
 void Tapper::measure_friction(const Path& column) {
   rest_from_above(column);
   const double down = force_at_rest(column.at(kFromAbove)).z();
@@ -130,8 +135,8 @@ void Tapper::measure_friction(const Path& column) {
       std::min(kLargestFriction, std::abs(down - force_at_rest(up.end()).z()) / 2 / rotation_per_metre(up, 0.0));
 }
 
-/// Returns the largest pull in N, relative to the zero at rest, that a free arm can read while it rises at `along`.
-/// Causes are friction of the joints and the motion itself.
+/// Returns the largest pull in N, relative to the zero at rest, that a free arm can measure while it rises. `along`:
+/// distance from the start of `way`, m. The causes are the friction of the joints and the motion itself.
 double Tapper::largest_pull(const Path& way, double along) const {
   if (!friction_) return options_.force_stop;
   const double beside =
@@ -139,30 +144,32 @@ double Tapper::largest_pull(const Path& way, double along) const {
   return motion_.threshold + beside + kReversalFriction * 2 * *friction_ * rotation_per_metre(way, along);
 }
 
-/// Returns the speed in m/s at which a free rise reads at most kSpeedPull N less than at the measured speed. The
-/// difference grows with the speed.
+/// Returns the greatest speed in m/s at which a free rise measures at most kSpeedPull (N) more pull than at the last
+/// measured speed. The difference grows with the speed.
 double Tapper::greatest_rise() const {
   const double surely = last_moving_.beside - kMovingNoise;
   if (surely <= 0.0) return motion_.retreat_speed;
   return std::min(motion_.retreat_speed, last_moving_.speed * (1.0 + kSpeedPull / surely));
 }
 
-/// Rises from a contact or its end, where only a pull is a fault. `zero`: force along z at the contact, N.
+/// Rises from a contact, or from the end of a descent without contact. During the rise, only a pull is a fault. `zero`:
+/// force along z at the contact, N.
 void Tapper::retreat(const Path& up, double sign, double zero, const tapping::HeightResult& contact) {
   guard_.forget_tare();
   const double touched = contact.outcome == Outcome::contact ? contact.height : height() + kGentleRise - kClearance;
   rise(up, std::clamp(touched - height(), 0.0, kMostGentleRise) + kClearance, sign, zero);
 }
 
-/// Rises slowly until the tip is `gently` metres higher, or up to kExtraRise metres more while the tool presses; then
-/// faster. During the slow part, the pressure disappears and friction changes its direction. Afterwards the zero
-/// follows the pose. `zero`: force along z of a free arm, N; if absent, the force after the slow part.
+/// Rises slowly until the tip is `gently` metres higher, then faster. While the tool still presses, the slow part lasts
+/// up to kExtraRise metres longer. During the slow part, the pressure disappears and friction changes its direction.
+/// Afterwards the zero follows its change with the pose. `zero`: force along z of a free arm, N; if absent, the force
+/// after the slow part.
 void Tapper::rise(const Path& up, double gently, double sign, const std::optional<double>& zero) {
   const double limit = largest_pull(up, 0.0);
   if (sign != 0.0 && zero) guard_.expect_rise(MotionGuard::Rise{*zero, sign, limit});
   const double clear = height() + gently;
   const double surely = clear + kExtraRise;
-  // A pull is detected with the same delay as a contact.
+  // A pull is detected with the same delay as a contact, so the same limit of the speed applies.
   const double stiffness = arm_.vertical_stiffness(seen_.joints->position);
   double speed = std::min({motion_.speed, kGentleSpeed,
                            std::max(reaction_.slowest(), reaction_.greatest_speed(motion_.threshold, stiffness))});

@@ -52,12 +52,12 @@ class Arm {
   /// Returns the position of the tip and the rotation of the hand, in the frame `base`.
   Pose tip(const Joints& joints) const;
 
-  /// Returns the vertical stiffness of the tip in `base`, in N/m, with the motors held: (J_z K^-1 J_z^T)^-1. J_z is the
-  /// vertical row of the Jacobian and K the stiffness of the springs. Typical values over a usual area are 2.2 to 6.4
-  /// kN/m.
+  /// Returns the vertical stiffness of the tip in `base`, in N/m, with the motors held: (J_z * K^-1 * J_z^T)^-1. J_z is
+  /// the vertical row of the Jacobian and K the stiffness of the springs. Typical values over a usual area are 2.2 to
+  /// 6.4 kN/m.
   double vertical_stiffness(const Joints& joints) const;
 
-  /// Returns joints that put the tip at the pose `tip`, to 1e-6 m and rad, by Levenberg and Marquardt's method started
+  /// Returns joints that put the tip at the pose `tip`, to 1e-6 m and rad, by the Levenberg-Marquardt method, started
   /// from `seed`. Returns nullopt if the method finds none, or if a joint is closer to its limit than `margin` radians.
   /// The elbow keeps its posture unless the seed is far from the solution.
   std::optional<Joints> solve(const Pose& tip, const Joints& seed, double margin = 0.0) const;

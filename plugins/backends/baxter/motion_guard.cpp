@@ -13,10 +13,11 @@ namespace {
 using Then = Fault::Then;
 using Button = StateReading::Button;
 
-/// Least set_speed_ratio: 0.27 times 1.5 rad/s are the 0.4 rad/s that joints are commanded.
+/// Minimum set_speed_ratio: 0.27 * 1.5 rad/s (the maximum speed of a joint) = 0.4 rad/s, the largest speed that the
+/// driver commands.
 constexpr double kLeastRatio = 0.27;
-constexpr double kLeastTimeout = 0.05;  ///< s: five set-points
-constexpr double kMostTimeout = 0.5;    ///< s for which an arm moves on after the last set-point
+constexpr double kLeastTimeout = 0.05;  ///< s: duration of five set-points
+constexpr double kMostTimeout = 0.5;    ///< s; an arm may move on for this time after the last set-point
 
 double degrees(double radians) { return radians * 180.0 / 3.14159265358979323846; }
 
@@ -71,7 +72,7 @@ std::optional<Fault> stale_fault(const char* stream, double age, double most, do
 std::optional<Fault> lateness_fault(const char* stream, const Arrival& arrival, MotionGuard::Delay& best, Then then) {
   const double delay = arrival.received - arrival.stamp;
   if (!std::isfinite(delay)) return Fault{fmt::format("{} has a time stamp that is not a number", stream), then};
-  // Unsynchronised clocks drift apart, by more than kLate within hours.
+  // Unsynchronised clocks drift apart by more than kLate within hours, so the smallest delay may grow slowly.
   best.least = std::min(delay, best.least + MotionGuard::kDrift * std::max(0.0, arrival.received - best.at));
   best.at = arrival.received;
   best.excess = delay - best.least;
@@ -85,7 +86,7 @@ std::optional<Fault> lateness_fault(const char* stream, const Arrival& arrival, 
 constexpr const char* kJoints = "/robot/joint_states of the left arm";
 constexpr const char* kEndpoint = "endpoint_state of the left arm";
 
-/// Returns a fault if two nodes send the same stream, among the streams whose fault allows the action `then`.
+/// Returns a fault if two nodes send the same stream. Checks only the streams whose fault has the action `then`.
 std::optional<Fault> duplicate_sender_fault(const Senders& senders, Then then) {
   const struct {
     const char* stream;
@@ -155,7 +156,7 @@ std::optional<Fault> MotionGuard::check_rates(const Snapshot& seen) {
   return rate_fault(seen);
 }
 
-/// Marks new readings.
+/// Counts the new messages and reads, and sets fresh_.
 void MotionGuard::mark_new_readings(const Snapshot& seen) {
   if (motion_.looks.empty()) motion_.began = seen.now;
   motion_.looks.push_back(seen.now);
@@ -168,8 +169,9 @@ void MotionGuard::mark_new_readings(const Snapshot& seen) {
   fresh_ = renewals_.take(endpoint, seen.now);
 }
 
-/// Returns a fault if readings or reads are too rare to detect a contact in time. A simulated clock runs on while this
-/// program is late. In that case the rate is compared with the reads of this program.
+/// Returns a fault if messages arrive too rarely to detect a contact in time, or if this program reads them too rarely.
+/// A simulated clock continues while this program is late. With a simulated clock, the number of messages is therefore
+/// compared with the number of reads.
 std::optional<Fault> MotionGuard::rate_fault(const Snapshot& seen) const {
   if (seen.now - motion_.began < ReadingCounter::kWindow) return std::nullopt;
   const int looks = static_cast<int>(motion_.looks.size());
@@ -312,7 +314,7 @@ std::optional<Fault> MotionGuard::check_following(const Snapshot& seen) const {
 /// Explains why the arm is behind its set-point: too slow, or blocked. The decision uses the speed of the joint that is
 /// farthest behind, over the last kRecent seconds.
 std::string MotionGuard::explain_lag(const Joints& now, double time) const {
-  constexpr double kRecent = 0.2;    // s of the measured speed
+  constexpr double kRecent = 0.2;    // s over which the speed is measured
   constexpr double kTurning = 0.05;  // rad/s: a blocked joint rotates slower
   const Sent& last = motion_.sent.back();
   const Sent& then = *std::find_if(motion_.sent.begin(), motion_.sent.end() - 1,

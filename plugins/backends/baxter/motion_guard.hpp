@@ -27,7 +27,7 @@ struct Fault {
   std::string reason;  ///< cause and remedy, one line
   Then then = Then::silence;
   bool ends_run = true;
-  bool reflex = false;  ///< the firmware's own reflex, which ends by itself
+  bool reflex = false;  ///< whether the firmware's own reflex stopped the arm; the reflex ends by itself
 };
 
 /// Allowed space of the tip, in the scene's frame, metres.
@@ -45,7 +45,7 @@ struct Workspace {
 class ReadingCounter {
  public:
   static constexpr double kWindow = 0.5;  ///< s
-  /// Least number of readings in a window: 50 Hz. Three readings, which make a contact, then take 60 ms, or 1.2 mm at 2
+  /// Minimum number of readings in a window: 50 Hz. The three readings of a contact then take 60 ms, or 1.2 mm at 2
   /// cm/s.
   static constexpr int kFewest = 25;
 
@@ -58,15 +58,15 @@ class ReadingCounter {
     return true;
   }
 
-  /// Returns the number of new readings within the last kWindow seconds. Messages that were replaced between two reads
-  /// count, if arrivals are counted.
+  /// Returns the number of new readings within the last kWindow seconds. If Arrival::count is set, messages that were
+  /// replaced between two reads are included.
   int count() const {
     if (readings_.empty()) return 0;
     const long counted = readings_.back().count - readings_.front().count + 1;
     return static_cast<int>(std::max(counted, static_cast<long>(readings_.size())));
   }
 
-  /// Restarts the count. The last reading still counts as known.
+  /// Restarts the count. A repetition of the last reading is still not new.
   void begin() { readings_.clear(); }
 
   /// Tolerance of the window in s, so that rounding does not change the count of a stream with exactly the least rate.
@@ -85,7 +85,7 @@ class ReadingCounter {
 /// of endpoint_state.
 class Renewals {
  public:
-  /// Least number of renewals in ReadingCounter::kWindow. Three readings, which make a contact, then take 0.4 s.
+  /// Minimum number of renewals in ReadingCounter::kWindow. The three readings of a contact then take 0.4 s.
   static constexpr int kFewest = 4;
 
   /// Takes the latest reading at time `now` (s). Returns whether its force is new.
@@ -93,10 +93,10 @@ class Renewals {
 
   /// Returns the number of renewals within the last ReadingCounter::kWindow seconds.
   int count() const;
-  /// Returns the required number of renewals in ReadingCounter::kWindow: half of the largest number so far, clamped to
-  /// kFewest and ReadingCounter::kFewest.
+  /// Returns the required number of renewals in ReadingCounter::kWindow: half of the largest number so far, limited to
+  /// the range from kFewest to ReadingCounter::kFewest.
   int needed() const { return std::clamp(most_ / 2, kFewest, ReadingCounter::kFewest); }
-  /// Returns whether the period of the renewals is known, after three renewals.
+  /// Returns whether the period of the renewals is known; this takes three renewals.
   bool known() const { return known_; }
   double messages() const { return messages_; }  ///< messages per renewal, measured
   double seconds() const { return seconds_; }    ///< seconds per renewal, measured
@@ -119,28 +119,31 @@ class Renewals {
 };
 
 /// Checks all safety rules. Limits come from published properties of the robot: its firmware stops at 16 N, drops
-/// commands after 0.2 s, and the arm trails its set-point by 0.3 to 0.4 s. Other limits are several times the values of
-/// a sound robot.
+/// commands after 0.2 s, and the arm lags behind its set-point by 0.3 to 0.4 s. Other limits are several times the
+/// values of a sound robot.
 class MotionGuard {
  public:
   static constexpr double kFresh = 0.1;       ///< s, largest age of joints and endpoint, which arrive every 0.01 s
   static constexpr double kStateFresh = 0.5;  ///< s, largest age of /robot/state
-  static constexpr double kLate = 0.3;        ///< s by which a stamp may be older than the best so far
-  static constexpr double kDrift = 1e-3;      ///< s per second, drift between the robot's clock and this computer's
-  static constexpr int kFrozen = 10;          ///< renewal periods without a change of the force are a fault
-  static constexpr int kFewestFrozen = 4;     ///< this many periods are a fault if they last kFrozenFor
-  static constexpr double kFrozenFor = 0.1;   ///< s
-  static constexpr double kJump = 0.06;      ///< rad between two readings; 4 rad/s of the wrist are 0.04 rad per period
-  static constexpr double kFollowing = 0.2;  ///< rad from the last set-point
-  static constexpr double kOffTheWay = 0.06;    ///< rad from every set-point of the last kTrail seconds
+  static constexpr double kLate = 0.3;        ///< s by which the delay of a message may exceed the least delay so far
+  static constexpr double kDrift = 1e-3;  ///< s per second, largest drift between the robot's clock and this computer's
+  static constexpr int kFrozen = 10;      ///< a force that is equal for this number of renewal periods is a fault
+  static constexpr int kFewestFrozen = 4;    ///< fewer equal periods, which are a fault if they last kFrozenFor
+  static constexpr double kFrozenFor = 0.1;  ///< s
+  /// rad, largest change between two readings; 4 rad/s of the wrist are 0.04 rad per period
+  static constexpr double kJump = 0.06;
+  static constexpr double kFollowing = 0.2;  ///< rad, largest distance from the last set-point
+  /// rad, largest distance from the nearest set-point of the last kTrail seconds
+  static constexpr double kOffTheWay = 0.06;
   static constexpr double kTrail = 0.8;         ///< s
   static constexpr double kZeroFollows = 0.5;   ///< s, time constant of a zero that follows the force
   static constexpr double kRiseFollows = 0.25;  ///< s, time constant of that zero while the arm rises
   static constexpr double kMostDrift = 50.0;    ///< N/m, largest change of the zero during a rise
-  /// Factor of the sideways limit during vertical motion, where the robot's estimate is worst. Friction of 0.4 Nm
-  /// causes 12 N.
+  /// Factor of the limit for sideways forces during vertical motion. The robot's estimate of these forces is worst:
+  /// friction of 0.4 Nm causes 12 N.
   static constexpr double kSideways = 1.5;
-  static constexpr int kForceSamples = 3;  ///< new readings above force_stop; one or two may be noise
+  /// number of new readings above force_stop that are a fault; one or two may be noise
+  static constexpr int kForceSamples = 3;
 
   /// Least delay between stamp and reception so far, seconds, and the time of its last update.
   struct Delay {
@@ -153,8 +156,9 @@ class MotionGuard {
 
   /// Resets commands and forces before a motion that follows a pause without set-points.
   void begin();
-  /// Reference of force_stop. With `stays` it is constant, as in a tap. With `follows` it follows the force while the
-  /// pose and its bias change, so that only changes within kZeroFollows seconds stop the arm.
+  /// Kind of the reference of force_stop. With `stays`, the reference is constant, as in a tap. With `follows`, it
+  /// follows the force, because the bias changes with the pose. Only changes within kZeroFollows seconds then stop the
+  /// arm.
   enum class Zero { stays, follows };
   /// Sets the force (N) that is the reference of force_stop. Before the first call no force stops the arm.
   void set_tare(const Eigen::Vector3d& force, Zero zero = Zero::stays) {
@@ -166,9 +170,9 @@ class MotionGuard {
   /// Limits of the pull while the arm rises: nothing presses against a rising arm, so a pull means that something
   /// holds the tool. `zero`: force along z without contact, N. `sign`: sign of the force when an object presses the
   /// tool upwards. `limit`: pull in N that stops the arm.
-  /// Friction during a rise reads as a pull of up to 13 N at 0.4 Nm. So once the arm rises freely, the zero is measured
-  /// again and `follows` the force. Its change is limited to kMostDrift times the height, the largest effect of a
-  /// changing pose; a faster change is the force of a spring.
+  /// During a rise, friction of 0.4 Nm appears as a pull of up to 13 N. So once the arm rises freely, the zero is
+  /// measured again and `follows` the force. The change of the zero is limited to kMostDrift * (height of the rise),
+  /// the largest effect of a changing pose. A larger change is the force of a spring.
   struct Rise {
     double zero;
     double sign;
@@ -190,12 +194,12 @@ class MotionGuard {
   /// Performs only the part of check() that does not depend on our own motion: marks new readings and checks their
   /// rates, which are known half a second after begin().
   std::optional<Fault> check_rates(const Snapshot& seen);
-  /// Returns an upper bound in s of the present lateness of set-points and readings together. It is twice the excess
-  /// delay of the latest joints or force, or the delay of this program's last read.
+  /// Returns an upper bound in s of the present lateness of set-points and readings together. It is the maximum of
+  /// twice the excess delay of the latest joints or force, and the delay of this program's last read.
   double lateness() const;
   /// Returns whether the last read brought a new force, not a known message or a repeated estimate.
   bool fresh() const { return fresh_; }
-  /// Returns the measured period of the force.
+  /// Returns the measured renewals of the force.
   const Renewals& renewals() const { return renewals_; }
   /// Records a set-point, so that check() can check whether the arm follows.
   void record_command(double time, const Joints& target);
@@ -240,12 +244,12 @@ class MotionGuard {
     std::optional<Eigen::Vector3d> tare;
     int too_strong = 0;
     std::optional<Rise> rise;
-    /// Zero (N) and height (m) at which the zero began to follow.
+    /// Zero (N) and height (m) at the time when the zero began to follow the force.
     struct Anchor {
       double zero, height;
     };
     std::optional<Anchor> anchor;
-    int pulled = 0;  ///< consecutive readings
+    int pulled = 0;  ///< number of consecutive readings with a pull above the limit
     bool collision_expected = false;
   };
 
@@ -258,7 +262,7 @@ class MotionGuard {
   Renewals renewals_;
   bool fresh_ = false;
   double collision_received_ = -std::numeric_limits<double>::infinity();  ///< time of the latest message
-  bool collision_streams_ = false;  ///< whether it arrived twice within kStateFresh
+  bool collision_streams_ = false;  ///< whether the last two arrived within kStateFresh
   Delay joint_delay_;
   Delay endpoint_delay_;
 };

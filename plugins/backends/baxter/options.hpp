@@ -19,8 +19,9 @@ constexpr double kGreatestStop = 15.0;
 /// N: twice the noise of the simulated robot; the noise of a real one is not published
 constexpr double kLeastThreshold = 3.0;
 constexpr double kShortestTare = 0.1;  ///< s
-constexpr double kSlowest = 0.01;      ///< m/s, for motions without a timeout
-constexpr double kFastest = 0.1;  ///< m/s downwards: after a contact the arm moves on for about a third of a second
+constexpr double kSlowest = 0.01;      ///< m/s, minimum for motions without a timeout
+/// m/s, maximum downwards: after a contact the arm moves on for about a third of a second
+constexpr double kFastest = 0.1;
 constexpr double kDeepest = 0.1;  ///< m below the desk
 
 /// Marks `field` as mandatory, except in the stub: its error about missing packages must come before errors about
@@ -55,7 +56,7 @@ struct ScenePoseOptions : Options {
   double corner[2] = {0.0, 0.0};  ///< x and y of the area's corner in base, metres
   double height = 0.0;            ///< height of the scene's origin in base, metres
   double rotation = 0.0;          ///< rotation about the vertical, radians
-  /// Returns the transform that maps a scene point (x, y, z) to (corner + R(rotation) (x, y), height + z).
+  /// Returns the transform that maps a scene point (x, y, z) to (corner + R(rotation) * (x, y), height + z).
   Eigen::Isometry3d frame() const {
     return Eigen::Translation3d(corner[0], corner[1], height) * Eigen::AngleAxisd(rotation, Eigen::Vector3d::UnitZ());
   }

@@ -9,8 +9,8 @@
 namespace palpate::baxter {
 namespace {
 
-/// Distance in metres between inverse kinematics solutions on a path. Interpolation in between misses the path by less
-/// than 0.1 mm.
+/// Distance in metres between inverse kinematics solutions on a path. Between the solutions, interpolation deviates
+/// from the path by less than 0.1 mm.
 constexpr double kColumnStep = 0.005;
 constexpr double kLineStep = 0.01;
 /// Largest rotation of the hand in rad between two solutions on a line.
@@ -33,7 +33,7 @@ void Path::add(const Joints& joints, double distance) {
   joints_.push_back(joints);
 }
 
-/// Returns the index of the point that ends the segment with `distance`.
+/// Returns the index of the end point of the segment that contains `distance`.
 std::size_t Path::segment(double distance) const {
   const auto after = std::upper_bound(at_.begin(), at_.end(), distance);
   const auto index = static_cast<std::size_t>(after - at_.begin());

@@ -71,15 +71,16 @@ class Planner {
   }
   Eigen::Vector3d to_scene(const Eigen::Vector3d& base) const { return frame_.inverse() * base; }
 
-  /// Plans straight down at `place`, from `hover` to `floor` (m). Inverse kinematics at `hover` starts from the
-  /// solution at `middle`, and at each lower height from the solution above. So a column depends only on its position,
-  /// not on the arm's earlier path. Throws if the tip's `speed` (m/s) requires a joint speed above kJointSpeed.
+  /// Plans a column: a path straight down at `place`, from `hover` to `floor` (m). Inverse kinematics at `hover` starts
+  /// from the solution at `middle`, and at each lower height from the solution above. So a column depends only on its
+  /// position, not on the arm's earlier path. Throws if the tip's `speed` (m/s) requires a joint speed above
+  /// kJointSpeed.
   Path column(const Target& place, const Target& middle, double hover, double floor, double speed) const;
 
-  /// Plans from `from` to `to` with the tip on a straight line and the hand rotating evenly.
+  /// Plans a path from `from` to `to` with the tip on a straight line and the hand rotating evenly.
   Path line(const Joints& from, const Joints& to) const;
 
-  /// Plans straight up from `from` by `rise` metres, with constant rotation of the hand.
+  /// Plans a path straight up from `from` by `rise` metres, with constant rotation of the hand.
   Path up(const Joints& from, double rise) const;
 
   /// Raises the scene by `height` metres, after a calibration tap.

@@ -28,8 +28,8 @@ constexpr double kUpright = 0.35;  ///< rad: largest tilt of the tool before the
 /// Formats a length with more digits than in messages about taps.
 std::string fine_centimetres(double length) { return fmt::format("{:.2f} cm", 100.0 * length); }
 
-/// Compares own kinematics with the robot's pose of left_gripper. Throws Error if they disagree, or if left_gripper is
-/// not at the configured distance.
+/// Compares the driver's own kinematics with the robot's pose of left_gripper. Throws Error if they disagree, or if
+/// left_gripper is not at the configured distance.
 void check_gripper(const JointReading& joints, const EndpointReading& endpoint, double gripper) {
   const Pose hand = Arm(Eigen::Vector3d::Zero()).tip(joints.position);
   const Eigen::Vector3d seen = hand.rotation.inverse() * (endpoint.pose.position - hand.position);
@@ -76,7 +76,7 @@ std::vector<std::string> check_settings(const Snapshot& seen) {
   return out;
 }
 
-/// Returns the largest speed of GuardedTap within a column, m/s.
+/// Returns the largest speed with which a GuardedTap moves in a column, m/s.
 double fastest(const BaxterOptions& options) {
   double out = 0.0;
   for (int i = 0; i < options.motion.count(); ++i) {
@@ -200,14 +200,14 @@ Path Tapper::column(const Target& place) const {
                          scene_.desk() - options_.deepest(), fastest(options_));
 }
 
-/// Plans from the current position to the height of travel. The path is empty if the arm is already there.
+/// Plans the path from the current position to the height of travel. The path is empty if the arm is already there.
 Path Tapper::way_up() const {
   const double missing = travel_height() - height();
   return planner_.up(seen_.joints->position, missing > kNearTravel ? missing : 0.0);
 }
 
-/// Solves inverse kinematics as configured. After a fault own kinematics is used, because the robot's service may have
-/// failed, too.
+/// Solves inverse kinematics as configured. After a fault the driver's own kinematics is used, because the robot's
+/// service may have failed, too.
 std::optional<Joints> Tapper::inverse(const Pose& tip, const Joints& seed) {
   if (options_.inverse_kinematics == BaxterOptions::InverseKinematics::own || recovering_) {
     return arm_.solve(tip, seed, kLimitMargin);

@@ -10,20 +10,22 @@
 namespace palpate::baxter {
 namespace {
 
-constexpr std::size_t kMotions = 5;      ///< last motions, of which the maximum counts
-constexpr std::size_t kContacts = 10;    ///< last contacts: five with a soft object leave an uncertainty of 0.1 s
+constexpr std::size_t kMotions = 5;  ///< number of last motions whose maximum counts
+/// number of last contacts in the mean; five with a soft object leave an uncertainty of 0.1 s
+constexpr std::size_t kContacts = 10;
 constexpr double kFades = 30.0;          ///< s: time constant with which a lateness decays
-constexpr std::size_t kFewest = 30;      ///< periods of a free descent
+constexpr std::size_t kFewest = 30;      ///< minimum number of periods of a free descent
 constexpr double kClear = 0.001;         ///< m above the onset from which the tip counts as free
 constexpr double kLeastNoticing = 0.04;  ///< s: three readings at 100 Hz, and one control period
 constexpr double kRiseFor = 0.1;         ///< s before a detection in which the slope of the force is measured
-constexpr double kMostNoticing = 0.5;    ///< s beyond kRenewals: longer rises are not steady
-/// Two standard deviations of the initial assumption, s, and its weight, 1/s^2.
+constexpr double kMostNoticing = 0.5;    ///< s, upper limit beyond kRenewals renewals; longer rises are not steady
+/// Two standard deviations of the assumed noticing time until the first contact, s, and the weight of this assumption,
+/// 1/s^2.
 constexpr double kFirst = ReactionTime::kFirstNoticing - kLeastNoticing;
 constexpr double kFirstWeight = 4.0 / (kFirst * kFirst);
 /// Least lag of the joints of a Baxter in s (measured: 0.3 to 0.4 s).
 constexpr double kLeastLag = 0.3;
-/// Distance that a critically damped joint moves on after a stop, in units of lag times speed: 1 / (2 e).
+/// Distance that a critically damped joint moves on after a stop, in units of lag * speed: 1 / (2 * 2.718).
 constexpr double kGoOn = 0.184;
 
 template <typename Value>
@@ -71,8 +73,8 @@ Line fit(const Periods& periods) {
 }
 
 /// Returns the slope of the force at the detection, N/s, from the speed with which the tip falls behind `descent`. If
-/// the springs do not show in the positions, the slope is the threshold divided by the time since the onset at height
-/// `began`.
+/// the positions do not show the deflection of the springs, the slope is the threshold divided by the time since the
+/// onset at height `began`.
 double rise(const Periods& periods, double began, const Line& descent, double threshold, double stiffness) {
   const ReactionTime::Period& notice = periods.back();
   const double rigid = stiffness * std::abs(descent.velocity);
@@ -128,8 +130,8 @@ void ReactionTime::learn_noticing(const Periods& periods, std::optional<double> 
   keep(noticing_, {seconds, rise(periods, began.value_or(softest), descent, threshold, stiffness)}, kContacts);
 }
 
-/// Returns the standard deviation of a contact's delay, s. With rare renewals the threshold may have been crossed up to
-/// one renewal earlier.
+/// Returns the standard deviation of a contact's delay, s. If the force is renewed rarely, the threshold may have been
+/// crossed up to one renewal earlier.
 double ReactionTime::deviation(const Notice& one) const {
   return std::hypot(kNoise / std::max(one.rise, 1e-3), renewal_ / std::sqrt(12.0));
 }

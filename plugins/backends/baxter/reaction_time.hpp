@@ -2,7 +2,7 @@
 // Measures the time from a contact to standstill while the arm taps, and derives the largest safe speed of a descent.
 //
 // The joints hold the tip through springs. An arm that descends with speed v onto a rigid object presses with
-//     F = threshold + k v T,    T = noticing + stopping + lateness,
+//     F = threshold + k * v * T,    T = noticing + stopping + lateness,
 // where k is the vertical stiffness of the springs. None of these times is published, and each depends on the robot,
 // its firmware and its network:
 // - noticing: from the moment when the true force equals the threshold to the set-point that stops the arm. It includes
@@ -11,8 +11,8 @@
 //   descent. If the force rises slowly, as on a soft object, noise moves the detection much earlier or later. So
 //   contacts are weighted by the slope of their force.
 // - stopping: from that set-point to standstill. It includes the delay of commands and joints, and the further motion
-// of the joints, which all make the arm lag behind its set-point. So the bound is the time by which the arm lags, minus
-// the least lag of the joints themselves.
+//   of the joints. All of these make the arm lag behind its set-point. The bound is therefore the time by which the arm
+//   lags, minus the least lag of the joints themselves, plus their further motion.
 // - lateness: the additional delay of messages, or of this program, compared with the measured contacts.
 #pragma once
 
@@ -38,13 +38,13 @@ class ReactionTime {
   static constexpr double kSlowest = 0.002;
   /// m/s: limit until the first measured contact. Until then the delays of the slowest supported robot are assumed.
   static constexpr double kSlowestFirst = 0.001;
-  static constexpr double kLookedAt = 1.5;      ///< s of a descent that are used
+  static constexpr double kLookedAt = 1.5;      ///< s, length of the used last part of a descent
   static constexpr double kShortestWay = 0.06;  ///< m: shortest motion that is used
   /// Number of renewals of the force until a contact is detected: the three readings of a contact, and one spoilt by
   /// noise.
   static constexpr double kRenewals = 4.0;
-  /// Noticing and trailing times in s until they are measured. The values belong to the slowest supported robot with a
-  /// force renewed 100 times a second.
+  /// Assumed noticing and trailing times in s until they are measured. The values belong to the slowest supported robot
+  /// with a force renewed 100 times a second.
   static constexpr double kFirstNoticing = 0.23;
   static constexpr double kFirstTrailing = 0.55;
   /// Standard deviation of the force at which a contact is detected, N. Noise of 1.5 N causes 0.5 to 0.9 N, and more if
@@ -65,9 +65,9 @@ class ReactionTime {
     Eigen::Vector3d reached;
   };
 
-  /// Learns the trailing time from a motion along a straight line. The area between commanded and measured position,
-  /// divided by the length, is the mean delay of any linear system, for any velocity profile. Offsets at rest are
-  /// subtracted. Motions shorter than kShortestWay are ignored.
+  /// Learns the trailing time from a motion along a straight line. The area between the commanded and the measured
+  /// position as functions of time, divided by the length, is the mean delay. This holds for any linear system and any
+  /// velocity profile. Offsets at rest are subtracted. Motions shorter than kShortestWay are ignored.
   void learn_trailing(const std::vector<Step>& motion);
 
   /// Learns the noticing time from a contact that was detected in the last of `periods`. `began` is the height (m)
@@ -79,7 +79,7 @@ class ReactionTime {
   /// Returns whether the measured contacts have at least the weight of the initial assumption. One contact with a hard
   /// object is enough, one with a soft object is not.
   bool measured() const;
-  /// Returns the limit in m/s below which an arm is rejected.
+  /// Returns the lower limit of the speed in m/s. A robot that would have to be slower is rejected.
   double slowest() const { return measured() ? kSlowest : kSlowestFirst; }
   /// Returns an upper bound of the noticing time, seconds: one period plus the largest of
   /// - the mean of the last kContacts contacts and the initial assumption, weighted by inverse variances, plus two
@@ -87,10 +87,10 @@ class ReactionTime {
   /// - the largest measured value minus two of its own standard deviations, because a robot may become slower;
   /// - kRenewals renewals of the force.
   double noticing() const;
-  double trailing() const;  ///< s, the maximum of the last kMotions motions
+  double trailing() const;  ///< s by which the arm lags behind its set-point, the maximum of the last kMotions motions
   double stopping() const;  ///< s
   double lateness() const { return late_; }
-  /// Returns T, seconds.
+  /// Returns T = noticing + stopping + lateness, seconds.
   double seconds() const { return noticing() + stopping() + late_; }
 
   /// Returns the largest speed (m/s) at which a contact with a rigid object stays below kGreatestForce.

@@ -25,7 +25,7 @@ struct Pose {
   Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();
 };
 
-/// Times of a message in seconds: reception and the sender's stamp. Both clocks may differ by seconds. So ages are
+/// Times of a message in seconds: reception and the sender's stamp. The two clocks may differ by seconds. So ages are
 /// computed from `received`, and stamps only show that the sender is alive.
 struct Arrival {
   double received = 0.0;
@@ -118,8 +118,8 @@ struct Snapshot {
   std::optional<Setting> speed_ratio;      ///< factor by which the robot slows set-points down, 0 to 1; default 0.3
   std::optional<Setting> command_timeout;  ///< s for which the robot follows a set-point; default 0.2
   EndEffector end_effector;
-  /// Longest time in s for which this program could not receive messages: the current gap and those that ended within
-  /// the last second. Real time. During a gap messages may have been sent.
+  /// Longest time for which this program could not receive messages, s of real time. It includes the current gap and
+  /// those that ended within the last second. During a gap messages may have been sent.
   double own_gap = 0.0;
   Senders senders;
   std::vector<std::string> commanders;  ///< other nodes that sent set-points of the left arm

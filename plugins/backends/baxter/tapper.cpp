@@ -17,9 +17,9 @@ using tapping::newtons;
 using ForceSign = BaxterOptions::ForceSign;
 using Then = Fault::Then;
 
-constexpr double kStepClamp = 0.05;  ///< rad: largest distance of a set-point from the last one and from the arm
+constexpr double kStepClamp = 0.05;          ///< rad: a set-point must be this near to the last one or to the arm
 constexpr double kArrivalTolerance = 0.015;  ///< rad: settled errors are up to 0.008
-constexpr double kRestTolerance = 0.002;     ///< rad within kRestTime
+constexpr double kRestTolerance = 0.002;     ///< rad: largest change within kRestTime of an arm that rests
 constexpr double kRestTime = 0.1;            ///< s
 constexpr double kSettlingTimeout = 5.0;     ///< s: after a stop the arm needs two
 
@@ -149,8 +149,8 @@ void Tapper::go_to(const Joints& hover) {
   motion_log_.reset();
 }
 
-/// Rises along `up` from the end of an earlier run or fault. `sign`: sign of the force when an object presses the tool
-/// upwards, 0 if unknown. `zero`: see rise().
+/// Rises along `up` from the position where an earlier run or a fault left the arm. `sign`: sign of the force when an
+/// object presses the tool upwards, 0 if unknown. `zero`: see rise().
 void Tapper::climb(const Path& up, double sign, const std::optional<double>& zero) {
   if (up.length() > 0.0) rise(up, kGentleRise, sign, zero);
 }
@@ -235,7 +235,7 @@ std::string Tapper::recover(const Fault& fault) {
   const auto silent = [](const Fault& other) { return std::string(kSilent) + ": " + other.reason; };
   const auto where = [&] { return "the arm holds " + centimetres(height() - scene_.desk()) + " above the desk"; };
   recovering_ = true;
-  // With an unknown sign, the force of the descent determines it.
+  // If the sign is unknown, the force during the descent determines it.
   const double sign = sign_ != 0.0 ? sign_ : std::copysign(1.0, seen_.endpoint->force.z() - zero_.z());
   const auto presses = [&] { return sign * (seen_.endpoint->force.z() - zero_.z()); };
   if (const auto other = hold_through_reflex(fault)) return silent(*other);
@@ -264,7 +264,7 @@ std::string Tapper::recover(const Fault& fault) {
 }
 
 /// Holds the arm at its position. If an object holds the tool and the reflex stopped the arm, the arm is held again
-/// after the reflex: its springs then pull less.
+/// after the reflex, at its new position. Its springs then pull less.
 std::optional<Fault> Tapper::hold_through_reflex(const Fault& fault) {
   if (const auto other = hold(seen_.joints->position)) return other;
   if (!fault.reflex || fault.then != Then::hold) return std::nullopt;

@@ -53,8 +53,8 @@ class Tapper {
   /// m: upper limit of that rise, because supported objects yield less.
   static constexpr double kMostGentleRise = 0.02;
   static constexpr const char* kSilent = "no more commands are sent, the arm stays where it is";
-  /// Height of travel above `hover`, m. The arm descends from there to its rest before the tare, so that friction
-  /// always has the same direction.
+  /// Height of travel above `hover`, m. The arm descends from there to the position where it rests for the tare, so
+  /// that friction always has the same direction.
   static constexpr double kFromAbove = tapping::GuardedTap::kFromAbove;
   /// m of a path over which largest_pull() measures the rotation of the joints.
   static constexpr double kRotationWindow = 0.01;

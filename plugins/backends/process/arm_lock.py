@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""A lock per arm for programs of the backend `process`. The lock of a record keeps two processes from one run, but not two
-runs from one arm. Backends of palpate use the same lock (framework/shared/children/arm_lock.hpp)."""
+"""A lock per arm for programs of the backend `process`. The lock of a record excludes a second process from a run,
+but not a second run from an arm. Backends of palpate use the same lock (framework/shared/children/arm_lock.hpp)."""
 import errno
 import os
 import socket
@@ -31,7 +31,7 @@ def hold_arm(arm):
 
 
 def holder_of(name):
-    """Returns a text with the process that holds the lock."""
+    """Returns a text that names the process that holds the lock."""
     with socket.socket(socket.AF_UNIX) as caller:
         caller.setblocking(False)
         try:

@@ -133,7 +133,7 @@ class Reader {
 };
 
 TapResult read_result(Reader& reader, const TapLine& line, const HeightBounds& bounds) {
-  // The outcome is read first, so that its fault is reported before a fault of the time.
+  // The outcome is read first, so that an invalid outcome is reported before an invalid time.
   const Outcome outcome = reader.outcome();
   TapResult out = tap_without_contact(outcome, reader.number("seconds"));
   if (reader.has("distance")) out.distance = reader.number("distance");

@@ -34,11 +34,11 @@ struct Answer {
 /// Reads `line` as the answer to `request`. Answers with values for which find_fault() returns a fault are rejected.
 Answer read_answer(const std::string& line, const TapRequest& request, const HeightBounds& bounds, Protocol protocol);
 
-/// Returns the question which lines can be tapped along, with its line end. It is about at most `count` of `lines`,
-/// beginning with line `first`.
+/// Returns the request that asks along which lines the program can tap, with its line end. The request contains at most
+/// `count` of `lines`, beginning with line `first`.
 std::string reaches_line(const Candidates& lines, Eigen::Index first, Eigen::Index count, const Context& context);
 
-/// Reads `line` as the answer to the question of reaches_line(). Returns one truth value per line, or an empty list if
+/// Reads `line` as the answer to the request of reaches_line(). Returns one truth value per line, or an empty list if
 /// the program reaches all lines. Returns nullopt for any other answer.
 std::optional<std::vector<bool>> read_reaches(const std::string& line, Eigen::Index count);
 

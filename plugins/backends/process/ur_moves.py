@@ -13,7 +13,7 @@ ACCELERATION = 0.5  # m/s^2; used in every move
 DECELERATION = 2.0  # m/s^2; used in every stop: 20 cm/s become 0 in 0.1 s, well within the time of the watchdog
 WATCHDOG = 5.0  # Hz; the controller stops the arm after 0.2 s without a message
 FRESH = 0.2  # seconds; the connection counts as lost after this time without a new state of the robot
-READINGS = 3  # number of consecutive new readings that make a contact, because a single reading may be a spike
+READINGS = 3  # number of consecutive new readings that count as a contact, because a single reading may be a spike
 ARRIVED = 0.0005  # metres; the tip has arrived if it is this near to the target
 WINDOW = 0.1  # seconds; the speed of the tip is an average over this time, because single samples are noisy
 AT_REST = 0.001  # m/s; below this speed, the arm is at rest
@@ -78,7 +78,7 @@ class Arm:
         self.approached = False  # whether the first approach is complete
 
     def look(self):
-        """Waits for the next state of the robot. Raises the reason if the arm must not move on."""
+        """Waits for the next state of the robot. Raises Fault or Over if the arm must not move on."""
         patience = time.monotonic() + FRESH
         while True:
             late = time.monotonic() > patience
@@ -99,13 +99,13 @@ class Arm:
         self.kick()
 
     def kick(self):
-        """Resets the watchdog. Raises the reason if the robot must not move."""
+        """Resets the watchdog. Raises Fault if the robot must not move."""
         check(self.receive)
         if not self.control.kickWatchdog():
             raise Fault(f"ur_rtde's script no longer runs on the robot: check the pendant's log, {RETRY}")
 
     def idle(self):
-        """As kick(), between two taps. An error becomes the answer to the next request, because a person may have
+        """Calls kick() between two taps. An error becomes the answer to the next request, because a person may have
         stopped the arm on purpose."""
         try:
             if not self.trouble:
@@ -118,11 +118,12 @@ class Arm:
         return list(self.receive.getActualTCPPose())
 
     def force(self):
-        """Returns newtons along x, y, z of the base, relative to the last zero."""
+        """Returns the force along x, y, z of the base, newtons, relative to the last zero."""
         return [f - zero for f, zero in zip(self.receive.getActualTCPForce(), self.zero_force)]
 
     def moves(self):
-        """Returns whether the tip moves, from its mean poses in both halves of WINDOW; True until WINDOW is full."""
+        """Returns whether the tip moves, from its mean positions in the two halves of the last WINDOW seconds. Returns
+        True if fewer seconds are known."""
         middle = self.stamp - WINDOW / 2
         halves = [[pose for stamp, pose in self.poses if (stamp > middle) == late] for late in (False, True)]
         if not all(halves) or self.poses[0][0] > self.stamp - 0.9 * WINDOW:
@@ -153,7 +154,7 @@ class Arm:
                     return [a / count for a in sum_]
 
     def zero(self, seconds):
-        """Sets the force at rest as zero, first in the sensor, then for the remaining offset."""
+        """Makes the force at rest the zero: first in the sensor, then by subtracting the remaining offset."""
         self.rest(seconds)
         if not self.control.zeroFtSensor():
             raise Fault(f"the robot does not zero its force sensor: use an e-Series or newer, {RETRY}")
@@ -163,8 +164,9 @@ class Arm:
     def follow(self, target, speed, until=None, touched=None):
         """Moves to `target`; the controller cannot move beyond it. Returns None on arrival.
 
-        With `touched`, the arm stops after READINGS consecutive readings for which `touched` is true. Pose and force of
-        the first of them are returned. After `until`, in the robot's seconds, it stops and raises TimeoutError.
+        With `touched`, the arm stops after READINGS consecutive readings for which `touched` is true. Returns the
+        pose and the force of the first of these readings. After the robot's time `until`, the arm stops, and the
+        function raises TimeoutError.
         """
         way = distance(self.pose(), target)
         until = until or self.stamp + 5.0 + 3.0 * way / speed
@@ -200,8 +202,8 @@ class Arm:
         return contacts[0]
 
     def halt(self):
-        """Begins to stop. Without new states nothing is sent, because ur_rtde would wait 300 s for an answer. The
-        watchdog then stops the arm, as it is no longer reset."""
+        """Begins to stop. If new states are missing, nothing is sent, because ur_rtde would wait 300 s for an answer.
+        The watchdog then stops the arm, as it is no longer reset."""
         if self.lost:
             return
         try:

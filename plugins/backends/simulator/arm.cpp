@@ -61,7 +61,7 @@ double maximum_over_disc(Height height, double radius, double least, Rise rise) 
 }
 
 /// Returns the height of the tool's lowest point when any part of the tool touches. height_at(dx, dy) is the height of
-/// the scene at a displacement from the tool's axis. It is at most `highest`.
+/// the scene at a displacement from the tool's axis. No height exceeds `highest`.
 template <class Height>
 double touch_height(const Effects& effects, double highest, const Height& height_at) {
   double height = height_at(0.0, 0.0);
@@ -91,9 +91,9 @@ double touch_distance(const Effects& effects, const Line& line, const Free& free
 
 }  // namespace
 
-// The deviation d = position - set-point obeys d'' + 2 zeta omega d' + omega^2 d = 0. If the set-point moves with the
-// speed v, the arm lags behind it by 2 zeta / omega * v = delay * v. After a step of the set-point, the arm overshoots
-// by exp(-pi zeta / sqrt(1 - zeta^2)) times the size of the step.
+// The deviation d = position - set-point obeys d'' + 2 * zeta * omega * d' + omega^2 * d = 0. If the set-point moves
+// with the speed v, the arm lags behind it by (2 * zeta / omega) * v = delay * v. After a step of the set-point, the
+// arm overshoots by exp(-pi * zeta / sqrt(1 - zeta^2)) times the size of the step.
 Arm::Arm(const std::optional<JointLag>& lag, double period, double position)
     : lags_(lag && lag->delay > 0.0), position_(position) {
   if (!lags_) return;
@@ -104,7 +104,7 @@ Arm::Arm(const std::optional<JointLag>& lag, double period, double position)
   const double decay = math::exp(-zeta * omega * period);
   const double rate = omega * std::sqrt(std::max(0.0, 1.0 - zeta * zeta));
   const double cosine = math::cos(rate * period);
-  const double sine = rate > 0.0 ? math::sin(rate * period) / rate : period;  // sin(rate t) / rate
+  const double sine = rate > 0.0 ? math::sin(rate * period) / rate : period;  // sin(rate * period) / rate
   from_deviation_[0] = decay * (cosine + zeta * omega * sine);
   from_deviation_[1] = -decay * omega * omega * sine;
   from_velocity_[0] = decay * sine;
@@ -160,7 +160,7 @@ ContactModel::ContactModel(const Effects& effects, double surface, bool desk, do
   if (effects.latency) late_ = effects.latency->deviation * std::abs(normal_()) / tapping::GuardedTap::kPeriod;
 }
 
-/// Returns the measured force, which is the force `late_` periods ago. It is interpolated linearly.
+/// Returns the measured force, which is the true force `late_` periods ago, interpolated linearly.
 double ContactModel::delayed(double force) {
   if (late_ <= 0.0) return force;
   forces_.push_back(force);

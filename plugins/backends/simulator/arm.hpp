@@ -56,14 +56,15 @@ class Arm {
   bool lags_;
   double position_;
   double velocity_ = 0.0;
-  /// Factors by which the deviation from the set-point and the velocity change over one period.
+  /// Coefficients of one period. The vector (deviation from the set-point, velocity) becomes `from_deviation_` *
+  /// deviation + `from_velocity_` * velocity.
   double from_deviation_[2]{}, from_velocity_[2]{};
 };
 
 /// Returns the height in metres of the tool's lowest point at its first contact during a vertical descent at (x, y).
 /// For a point tool, this is the height of the scene at (x, y). The contact is higher if the side of a round tip or the
-/// shaft touches a taller part nearby. The function searches the maximum over the disc of the tool, first on rings and
-/// then around the best point. The result is accurate to 0.1 um where the scene is smooth or has one edge. Details
+/// shaft touches a taller part nearby. The function searches for the maximum over the disc of the tool, first on rings
+/// and then around the best point. The result is accurate to 0.1 um where the scene is smooth or has one edge. Details
 /// smaller than an eighth of the radius may be missed.
 double contact_height(const Scene& scene, const Effects& effects, double x, double y);
 

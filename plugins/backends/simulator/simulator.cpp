@@ -66,7 +66,8 @@ void Simulator::reaches(const Candidates& lines, BoolOut out) const {
   for (Eigen::Index i = 0; i < lines.size(); ++i) out(i) = reaches(lines.line(i));
 }
 
-/// Returns whether the tip and the whole shaft are above the desk when the tool starts.
+/// Returns whether the start of the line is within the arm's reach, and the tip and the whole shaft are above the desk
+/// there.
 bool Simulator::reaches(const TapLine& line) const {
   const Effects& effects = scene_.effects();
   const double above = line.start.z() - scene_.desk();
@@ -97,7 +98,8 @@ TapResult Simulator::tap_along(const TapRequest& request) const {
   const std::unique_ptr<const Scene> pushed = scene_.after(request.number - 1);
   const Scene& scene = pushed ? *pushed : scene_;
   double along = contact_along(scene, effects, true_line);
-  // A round tip may touch the desk with its side, so the results of both searches are compared.
+  // A round tip may touch the desk with its side. The tool therefore touches the desk if contact_along() and
+  // desk_along() give the same distance.
   constexpr double kAsExact = 1e-6;  // metres; more than the accuracy of both searches
   const bool desk = effects.stiffness && along > desk_along(scene, effects, true_line) - kAsExact;
   const Eigen::Vector3d met = true_line.origin + std::min(along, length) * true_line.direction;

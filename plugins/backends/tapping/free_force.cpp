@@ -6,10 +6,10 @@
 namespace palpate::tapping {
 namespace {
 
-/// Prior of the slope in m^2, in units of the sum of squared heights: (noise of a reading / expected slope)^2, for 1.5
-/// N and 50 N/m.
+/// Strength of the prior of the slope, m^2. It is added to the sum of squared heights: (noise of a reading / expected
+/// slope)^2 = (1.5 N / 50 N/m)^2.
 constexpr double kSlopePrior = 0.0009;
-/// Weight of the tare in readings. It dominates the line while there are few readings.
+/// Weight of the tare, as a number of readings. The tare dominates the line while there are few readings.
 constexpr double kTareWeight = 5.0;
 
 }  // namespace

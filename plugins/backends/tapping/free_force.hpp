@@ -12,12 +12,12 @@ struct Sample {
   double force;
 };
 
-/// Line through the force over the last centimetres of free travel. The zero of an estimated force depends on the pose
-/// of the arm, so a tare at the height of travel is wrong by several newtons further down.
+/// Straight line fitted to the force over the last centimetres of free travel. The zero of an estimated force depends
+/// on the pose of the arm, so a tare at the height of travel is wrong by several newtons further down.
 class FreeForce {
  public:
-  /// `gap`: samples closer than this to the tip (metres above it) are ignored, because they may contain a soft contact.
-  /// `top`: height of the tare, metres.
+  /// `gap`: samples less than this distance above the tip (metres) are ignored, because they may contain a soft
+  /// contact. `top`: height of the tare, metres.
   FreeForce(double gap, double top) : gap_(gap), top_(top) {}
 
   /// Removes all samples and sets the force of a tare, newtons.
@@ -34,10 +34,11 @@ class FreeForce {
     double at(double other) const { return force + slope * (other - height); }
   };
 
-  /// Returns the line for the present height (m): least squares through the samples between `gap` and `gap` + kLength
-  /// above, with a normal prior with mean 0 for the slope. Without samples it is the tare. The slope is at most
-  /// kMostDrift. At `height` the line differs from the tare by at most kMostOffset + kMostDrift per metre below the
-  /// top. Larger changes are a soft object, not a zero.
+  /// Returns the line for a tip at `height` (m). It is a least-squares fit to the samples between `gap` and `gap` +
+  /// kLength above `height`. The slope has a normal prior with mean 0. Without samples, the line is the constant force
+  /// of the tare. The slope is at most kMostDrift in absolute value. At `height`, the line differs from the tare by at
+  /// most kMostOffset + kMostDrift * (distance below `top`). Larger changes come from a soft object and not from the
+  /// zero.
   Line line(double height) const;
 
   static constexpr double kLength = 0.03;     ///< m

@@ -10,19 +10,19 @@
 namespace palpate::tapping {
 namespace {
 
-/// Consecutive readings above the threshold that make a contact; fewer may be noise.
+/// Number of consecutive readings above the threshold that count as a contact; fewer may be noise.
 constexpr int kConsecutive = 3;
-/// Distance in m at which the arm counts as arrived at its goal. An arm also counts as arrived if it has not approached
-/// by kArrivalTolerance for kBlockedTime seconds, because something blocks it.
+/// Distance in m at which the arm counts as arrived at its goal. An arm also counts as arrived if its distance to the
+/// goal has not decreased by kArrivalTolerance for kBlockedTime seconds, because something blocks it.
 constexpr double kArrivalTolerance = 0.001;
 constexpr double kBlockedTime = 2.0;
-/// Lag in s of the arm behind its set-point; the arm does not move before.
+/// Lag in s of the arm behind its set-point. After a change of the set-point, the arm does not move during this time.
 constexpr double kArmLag = 0.35;
 /// Time in s after which the arm descends at constant speed.
 constexpr double kConstantSpeedTime = 0.7;
 
 /// Averages groups of consecutive samples, so that at most kMostSamples remain. The search for an onset takes quadratic
-/// time while the arm waits.
+/// time, and the arm waits for it.
 std::vector<Sample> thinned(const std::vector<Sample>& samples) {
   constexpr std::size_t kMostSamples = 400;
   const std::size_t size = samples.size() / kMostSamples + 1;
@@ -126,7 +126,7 @@ void GuardedTap::advance(double height) {
   }
 }
 
-/// Ends a tare after its time, with the mean force as the zero.
+/// Ends a tare once its time has passed. The mean force becomes the zero.
 void GuardedTap::finish_tare() {
   if (!waited(stage_ == Stage::tare ? motion_.tare : motion_.pause) || summed_ == 0 || !averaged(kFewestTared)) return;
   zero_ = sum_ / summed_;
@@ -134,8 +134,8 @@ void GuardedTap::finish_tare() {
   enter(stage_ == Stage::settle ? Stage::fine : Stage::approach);
 }
 
-/// Tares a real arm at the end of a pause, when it rests. A change of half the threshold may be a contact, so it is not
-/// tared away.
+/// Tares a real arm at the end of a pause, when it rests. A force change of half the threshold may be a contact, so the
+/// tare does not remove it.
 void GuardedTap::tare_in_pause() {
   if (arm_ != Arm::real || !waited(motion_.pause) || summed_ == 0) return;
   const double mean = sum_ / summed_;
@@ -184,11 +184,11 @@ void GuardedTap::evaluate(double height, double force) {
   if (descending || stage_ == Stage::stop || paused) trace_.push_back({height, force});
 }
 
-/// Accepts the contact, or continues the descent. A true contact keeps the mean force high after its three readings,
-/// noise does not. The mean may be below the threshold, because an arm that stops relaxes its springs, especially on
-/// soft objects.
+/// Accepts the contact, or continues the descent. After a true contact, the mean of the following readings stays high;
+/// after noise, it does not. Even the mean of a true contact may be below the threshold, because an arm that stops
+/// relaxes its springs, especially on soft objects.
 void GuardedTap::conclude(const Rise& found) {
-  // A braking arm presses less during the mean.
+  // While an arm brakes, it presses less, so the mean is lower.
   const bool relaxes = motion_.brake > 0.0 || arm_ == Arm::real;
   const double least = relaxes ? 0.5 * motion_.threshold : motion_.threshold;
   const bool presses = summed_ == 0 || sum_ / summed_ - zero_ > least;
@@ -207,7 +207,7 @@ void GuardedTap::conclude(const Rise& found) {
   enter(Stage::descend);
 }
 
-/// Counts contacts that last but rise too slowly. Returns whether kMostSoft of them occurred at one height.
+/// Counts contacts whose force lasts but rises too slowly. Returns whether kMostSoft of them occurred at one height.
 bool GuardedTap::too_soft() {
   if (softs_ == 0 || std::abs(soft_ - first_) > kFarthestOnset) {
     soft_ = first_;
@@ -216,7 +216,7 @@ bool GuardedTap::too_soft() {
   return ++softs_ >= kMostSoft;
 }
 
-/// Ends the rest of `paper`, with the height of the resting arm.
+/// Ends the standstill of the motion `paper`. The result is the height of the resting arm.
 void GuardedTap::conclude_at_rest(double height) {
   Rise found = arm_ == Arm::simulated ? Rise{height, true, 0.0} : rise();
   found.height = height;
@@ -229,7 +229,7 @@ void GuardedTap::conclude_at_onset() {
   conclude(rise());
 }
 
-/// Returns onset and slope of a real arm's force above the line of free travel.
+/// Returns onset and slope of a real arm's force relative to the line of free travel.
 GuardedTap::Rise GuardedTap::rise() const {
   const FreeForce::Line free = free_.line(first_);
   std::vector<Sample> above;
@@ -251,7 +251,8 @@ double GuardedTap::even_for() const {
 }
 
 void GuardedTap::enter(Stage stage) {
-  // A real arm with `paper` may touch during a pause, or between two steps. In these cases its samples continue.
+  // With the motion `paper`, a real arm may touch during a pause or between two steps. The earlier samples of the
+  // contact are then kept.
   const bool resumed =
       stage_ == Stage::stop || (arm_ == Arm::real && (stage_ == Stage::pause || stage_ == Stage::rest));
   stage_ = stage;
@@ -270,8 +271,8 @@ void GuardedTap::enter(Stage stage) {
                                                          : descent_.floor;
       break;
     case Stage::back_off: {
-      // The reference is the onset, because a soft object may yield by more than back_off. The tare would then include
-      // its force.
+      // The retreat is measured from the onset, because a soft object may yield by more than back_off. The tare would
+      // then include the force of the object.
       const double more = arm_ == Arm::real ? kFromAbove : 0.0;
       goal_ = std::min(descent_.hover + more,
                        std::max(set_point_, onset_of_descent(trace_).value_or(set_point_)) + motion_.back_off + more);
@@ -291,7 +292,7 @@ void GuardedTap::enter(Stage stage) {
 void GuardedTap::start_reaction(double height) {
   first_ = height;
   ++noticed_;
-  // If the arm lags behind its set-point, a constant set-point would increase the force.
+  // An arm that lags behind a constant set-point would press further and increase the force.
   if (motion_.type != MotionOptions::Type::paper || arm_ == Arm::real) set_point_ = height;
   if (motion_.type == MotionOptions::Type::continuous) set_point_ = std::min(descent_.hover, height + motion_.brake);
   switch (motion_.type) {
@@ -305,7 +306,7 @@ void GuardedTap::start_reaction(double height) {
   }
 }
 
-/// Moves the set-point towards `goal` by one period. Returns whether it has arrived.
+/// Moves the set-point towards `goal` by one period. Returns whether the set-point has reached `goal`.
 bool GuardedTap::ramp(double goal, double speed) {
   const double most = speed * kPeriod;
   const double left = goal - set_point_;
@@ -328,8 +329,8 @@ bool GuardedTap::arrived(double height) {
   return gap < kArrivalTolerance || static_cast<double>(periods_ - nearer_) * kPeriod >= kBlockedTime;
 }
 
-/// Returns whether `seconds` have passed in this stage. Half a period is added, so that rounding does not matter: 0.5 s
-/// are 50 periods.
+/// Returns whether `seconds` have passed in this stage. Half a period is added, so that 0.5 s are 50 periods despite
+/// rounding.
 bool GuardedTap::waited(double seconds) const {
   return (static_cast<double>(periods_ - entered_) + 0.5) * kPeriod >= seconds;
 }

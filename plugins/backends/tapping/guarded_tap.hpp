@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The guarded tap: computes the next set-point from measured height and force, one period at a time, and the onset of a
-// contact from samples before and after its detection. A simulator and a robot drive the same class.
+// The guarded tap. In each period of the control loop, it computes the next set-point from the measured height and
+// force. It computes the onset of a contact from the samples before and after the detection. The simulator and the
+// robots use the same class.
 #pragma once
 
 #include "tapping/free_force.hpp"
@@ -12,48 +13,51 @@
 
 namespace palpate::tapping {
 
-/// Returns the height at which the force begins to rise. It is the kink of the hinge force = zero + slope * max(0, kink
-/// - height) that fits `samples` best by least squares, with free zero and slope. The height of a threshold crossing is
-/// lower, by threshold / stiffness and the motion during the detection. The kink has neither error and averages the
-/// noise.
-/// Returns nullopt with fewer than four samples, or if the force rises with the depth for no slope. If all kinks of an
-/// interval fit equally (a rigid surface between two samples), the lowest is returned.
+/// Returns the height at which the force begins to rise. The result is the kink of the hinge function `force = zero +
+/// slope * max(0, kink - height)` that fits `samples` best by least squares. Zero, slope and kink are free. The height
+/// at which the force crosses a threshold would be lower: by threshold / stiffness, and by the motion during the
+/// detection. The kink has neither of these errors, and the fit averages the noise.
+/// Returns nullopt with fewer than four samples or three different heights, or if no kink gives a force that rises with
+/// the depth. If all kinks of an interval fit equally (a rigid surface between two samples), the lowest is returned.
 std::optional<double> onset(const std::vector<Sample>& samples);
 
-/// Returns the onset of the contact at the end of `descent`, whose samples are in order of time. Only the last part is
-/// used, because the zero of the force may drift. This part contains the whole rise, which is long on soft objects, and
-/// some free travel above it.
+/// Returns the onset of the contact at the end of `descent`, whose samples are in order of time. Only the last part of
+/// the descent is used, because the zero of the force may drift. This part contains the whole rise, which is long on
+/// soft objects, and some free travel above it.
 std::optional<double> onset_of_descent(const std::vector<Sample>& descent);
 
-/// Returns the slope of the force below a kink, N/m, of the hinge that fits `samples` best. Returns 0 without samples
-/// below the kink.
+/// Returns the slope of the force below `kink`, N/m, for the hinge function with this kink that fits `samples` best.
+/// Returns 0 without samples below the kink.
 double slope_below(const std::vector<Sample>& samples, double kink);
 
 /// Reason of the outcome `timeout`.
 constexpr const char* kTooLong = "the tap took longer than motion.timeout";
 
-/// One descent, from arrival at the height of travel to the end of contact. The caller makes travel and retreat.
+/// One descent, from the arrival at the height of travel until the result is known. The caller commands the travel
+/// before the descent and the retreat after it.
 ///
-/// In each period the caller passes the measured height and force, and whether the force is new. It then commands the
-/// returned set-point. A contact is detected after three consecutive new readings above the threshold. The reaction
-/// depends on the motion:
-/// - paper: the set-point stays (not with a real arm) and the pause passes. The height is measured while the arm still
-///   presses. So it is too low by the distance that the contact yields.
-/// - two_stage: the set-point jumps to the arm, backs off until the tip is free, waits and tares. A slow descent to a
-///   lower threshold follows, and its contact is the result. Without a second contact within twice the distance of the
-///   retreat, the first was false and the descent continues.
-/// - continuous: the set-point jumps to the arm, and the height is that of the onset.
-/// A contact of a real arm is accepted if its force lasts and rises as on an object: within kFarthestOnset and by at
-/// least kSoftestRise. Otherwise the descent continues; a second contact within kSamePlace of the first is accepted.
+/// In each period the caller passes the measured height and force, and whether the force is new. The caller then
+/// commands the returned set-point. A contact is detected after three consecutive new readings above the threshold. The
+/// reaction depends on the motion:
+/// - paper: the set-point stays until the end of the pause (that of a real arm jumps to the arm's position). The height
+///   is measured while the arm still presses. So the height is too low by the distance by which the contact yields.
+/// - two_stage: the set-point jumps to the arm's position. The arm backs off until the tip is free, waits and tares. A
+///   slow descent with a lower threshold follows; its contact is the result. If there is no second contact within twice
+///   the distance of the retreat, the first contact was false, and the descent continues.
+/// - continuous: the set-point jumps to the arm's position, and the measured height is the onset.
+/// A contact of a real arm is accepted if its force lasts, rises by at least kSoftestRise, and began to rise at most
+/// kFarthestOnset above the detection. Otherwise the descent continues. If only the duration was too short, a second
+/// contact within kSamePlace of the first is accepted.
 class GuardedTap {
  public:
   /// Period of the control loop in s: Baxter's joint states arrive at 100 Hz.
   static constexpr double kPeriod = 0.01;
 
   /// Kind of arm. The simulated arm with `paper` keeps its set-point at a contact and presses further, as in the paper.
-  /// A real arm stops at 16 N and its zero drifts. At each contact its set-point jumps to the arm's position, and every
-  /// pause of `paper` tares again, unless a contact may begin. Friction makes its force at rest depend on the direction
-  /// of motion, so every tare follows a descent.
+  /// A real arm stops by itself at 16 N, and the zero of its force drifts. At each contact of a real arm, the set-point
+  /// jumps to the arm's position. Every pause of `paper` repeats the tare, unless a contact may begin. Because of
+  /// friction, the force of a resting real arm depends on the direction of its last motion, so every tare follows a
+  /// descent.
   enum class Arm { simulated, real };
 
   /// Descent in metres after which the friction of a resting arm equals the friction of a descending arm: joints
@@ -61,19 +65,21 @@ class GuardedTap {
   static constexpr double kFromAbove = 0.01;
 
   /// Limits of a real arm's contact: its onset is at most kFarthestOnset (m) above the detection, and its force rises
-  /// by at least kSoftestRise (N/m). A slower rise is a zero that changes with the pose.
+  /// by at least kSoftestRise (N/m). A slower rise is attributed to a zero that changes with the pose.
   static constexpr double kFarthestOnset = 0.03;
   static constexpr double kSoftestRise = 200.0;
-  /// Stiffness in N/m of the softest supported contact; its onset is excluded from the force of free travel.
+  /// Stiffness in N/m of the softest supported contact; the force of free travel excludes samples that may belong to
+  /// its rise.
   static constexpr double kSoftest = 600.0;
-  /// For a real arm: least number of new readings in the mean of a tare, and in the mean after a contact. A robot may
-  /// renew its force only 8 times a second.
+  /// For a real arm: minimum number of new readings in the mean of a tare, and in the mean after a contact. A robot may
+  /// update its force only 8 times per second.
   static constexpr int kFewestTared = 10;
   static constexpr int kFewestWatched = 3;
-  /// Number of contacts within kFarthestOnset that last but rise by less than kSoftestRise after which the tap ends,
-  /// because the object is too soft.
+  /// The tap ends after this number of contacts within kFarthestOnset whose force lasts but rises by less than
+  /// kSoftestRise. The object is then too soft.
   static constexpr int kMostSoft = 2;
-  /// Distance in metres within which two contacts that do not last are one contact with a soft object.
+  /// If two contacts whose force does not last are nearer than this distance (metres), they count as one contact with a
+  /// soft object.
   static constexpr double kSamePlace = 0.002;
 
   GuardedTap(const MotionOptions& motion, const Descent& descent, Arm arm = Arm::simulated);
@@ -85,8 +91,8 @@ class GuardedTap {
   /// Limits the speed of the descent from now on, m/s, and extends the timeout accordingly.
   void slow_to(double speed);
 
-  /// Reports that the arm stopped by itself because of its own force limit; the set-point jumps up from `height` (m).
-  /// If the force also appears here, perhaps late, the result is a normal contact; otherwise the tap is aborted.
+  /// Handles a stop of the arm by its own force limit: the set-point jumps up from `height` (m). If the measured force
+  /// also shows the contact, perhaps later, the result is a normal contact. Otherwise the tap is aborted.
   void give_up(double height);
 
   bool done() const { return stage_ == Stage::done; }
@@ -150,7 +156,7 @@ class GuardedTap {
   double goal_ = 0.0;  ///< m, end of the stage's ramp
   double zero_ = 0.0;  ///< force without a contact, N
   FreeForce free_;     ///< force of free travel, of a real arm
-  double sum_ = 0.0;   ///< N, sum of the forces of a mean
+  double sum_ = 0.0;   ///< N, sum of the forces for a mean
   int summed_ = 0;     ///< number of forces in sum_
   double peak_ = 0.0;
   double first_ = 0.0;             ///< m, height at the last detection

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The result of a motion along one axis: straight down, or along a line whose remaining length stands for the height.
+// The result of a motion along one axis. The motion goes straight down or along another line. For another line, the
+// remaining length of the line takes the place of the height.
 #pragma once
 
 #include <palpate/tap.hpp>
@@ -21,7 +22,7 @@ struct HeightResult {
   std::optional<double> peak_force = std::nullopt;  ///< newtons
 };
 
-/// Returns the result of a tap along `line`, which is from above.
+/// Returns the result of a tap along `line`, which must be vertical and from above.
 inline TapResult result_on(const TapLine& line, HeightResult result) {
   TapResult out = result.outcome == Outcome::contact ? contact_on(line, result.height, result.force, result.seconds)
                                                      : tap_without_contact(result.outcome, result.seconds);

@@ -38,8 +38,8 @@ std::string contact(const MotionOptions& motion) {
                      per_second(motion.fine_speed), newtons(motion.fine_threshold));
 }
 
-/// Error in s of the detection time; a moving arm errs by speed times this. An estimate for arms like Baxter's, see
-/// `latency` in configs/effects/standard.yaml.
+/// Error of the detection time, s. The height that a moving arm measures has an error of speed * kTimeError. This is an
+/// estimate for arms like Baxter's, see `latency` in configs/effects/standard.yaml.
 constexpr double kTimeError = 0.015;
 /// Error in metres of the height of a resting arm; see `pose_noise` in configs/effects/standard.yaml.
 constexpr double kHeightError = 0.001;
@@ -215,13 +215,13 @@ Descent plan_descent(const MotionOptions& motion, double desk, const std::option
     const AdaptiveHover& adaptive = *motion.adaptive_hover;
     const double probability = adaptive.certainty ? predicted->probability.value_or(0.5) : 0.5;
     const double certainty = adaptive.certainty.value_or(1.0);
-    // The desk is certain for any prediction of the models.
+    // The surface is never below the desk, whatever the models predict.
     double surface = desk;
     if (probability > 1.0 - certainty)
       surface = std::max(desk, predicted->height + adaptive.deviations * predicted->standard_deviation);
     out.start = std::min(out.hover, surface + adaptive.clearance);
-    // If a contact is not detected, the arm presses down to the floor. So the floor below an object is as deep as that
-    // below the desk.
+    // If a contact is not detected, the arm presses down to the floor. The floor is therefore equally far below an
+    // object as below the bare desk.
     if (probability >= certainty) {
       constexpr double kSure = 3.0;  // standard deviations
       const double lowest = predicted->height - kSure * predicted->standard_deviation;

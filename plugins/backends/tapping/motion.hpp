@@ -20,8 +20,8 @@ struct AdaptiveHover : Options {
   double deviations = 2.0;  ///< clearance in standard deviations of the predicted height
   double clearance = 0.01;  ///< additional clearance, metres
   double speed = 0.1;       ///< m/s, speed of the fast descent
-  /// Least probability of an object, or of the bare desk, at which the motion relies on it. Absent: an object is
-  /// expected everywhere.
+  /// Minimum probability of an object, or of the bare desk, at which the descent relies on the prediction. If absent,
+  /// an object is expected everywhere.
   std::optional<double> certainty;
   void list(Fields& fields) override;
 };
@@ -31,13 +31,13 @@ struct MotionOptions : Options {
   enum class Type { paper, two_stage, continuous, per_tap };  ///< `per_tap` only in BackendMotion
   Type type = Type::paper;
   double speed = 0.024;         ///< m/s, descent
-  double step = 0.03;           ///< m, paper
-  double pause = 0.5;           ///< s, paper and two_stage
-  double back_off = 0.02;       ///< m, two_stage
-  double brake = 0.0;           ///< m, continuous
-  bool confirm = false;         ///< continuous; real arms always confirm
-  double fine_speed = 0.02;     ///< m/s, two_stage
-  double fine_threshold = 6.0;  ///< N, two_stage
+  double step = 0.03;           ///< m, only for `paper`
+  double pause = 0.5;           ///< s, only for `paper` and `two_stage`
+  double back_off = 0.02;       ///< m, only for `two_stage`
+  double brake = 0.0;           ///< m, only for `continuous`
+  bool confirm = false;         ///< only for `continuous`; real arms always confirm
+  double fine_speed = 0.02;     ///< m/s, only for `two_stage`
+  double fine_threshold = 6.0;  ///< N, only for `two_stage`
   double threshold = 10.0;      ///< N
   double hover = 0.135;         ///< m above the desk
   std::optional<AdaptiveHover> adaptive_hover;
@@ -92,14 +92,14 @@ constexpr const char* kStoppedByItself = "the arm stopped by itself, short of mo
 constexpr double kWatched = 0.1;
 
 /// Returns the seconds from arrival to contact with a rigid surface at height `surface` (m). The arm follows its
-/// set-point without lag, and the force has no noise. GuardedTap takes as long, except for rounding to periods and the
-/// readings of a detection.
+/// set-point without lag, and the force has no noise. The duration of a GuardedTap is the same, except for rounding to
+/// periods and for the readings that a detection needs.
 double ideal_seconds(const MotionOptions& motion, const Descent& descent, double surface);
 
 /// Returns the motions from which the strategy chooses; null if there is only one.
 std::unique_ptr<Motions> motions(const BackendMotion& motion, double desk);
 
-/// Format a length with 0.1 cm and a force with 0.1 N: "13.5 cm", "6.0 N".
+/// Format a length to 0.1 cm and a force to 0.1 N: "13.5 cm", "6.0 N".
 std::string centimetres(double length);
 std::string newtons(double force);
 /// Formats a position: "(11.5, 3.0) cm".

@@ -7,7 +7,8 @@
 namespace palpate::tapping {
 namespace {
 
-/// Shortest part of a descent that is searched, metres, and largest share of it that the rise may take.
+/// Length in metres of the shortest part of a descent that is searched, and largest fraction of the searched part that
+/// the rise may take.
 constexpr double kFirstWindow = 0.02;
 constexpr double kInside = 0.6;
 
@@ -56,7 +57,8 @@ std::optional<double> onset(const std::vector<Sample>& samples) {
   std::sort(heights.begin(), heights.end());
   heights.erase(std::unique(heights.begin(), heights.end()), heights.end());
   if (heights.size() < 3) return std::nullopt;
-  // The hinge changes smoothly between neighbouring heights, so the best height is next to the best kink.
+  // Between neighbouring heights, the fit changes smoothly with the kink. The best height is therefore a neighbour of
+  // the best kink.
   std::size_t best = 0;
   double most = -1.0;
   for (std::size_t i = 1; i < heights.size(); ++i) {

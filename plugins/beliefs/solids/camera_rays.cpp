@@ -21,7 +21,7 @@ constexpr double kAway = 0.6;
 
 bool on_object(const SurfaceTouch& ray) { return ray.contact && !ray.desk; }
 
-/// Appends `count` rays, evenly selected; all if there are not more.
+/// Appends `count` evenly selected rays of `from` to `out`, or all rays if there are fewer.
 void take_evenly(const std::vector<SurfaceTouch>& from, std::size_t count, std::vector<SurfaceTouch>& out) {
   const std::size_t taken = std::min(count, from.size());
   for (std::size_t i = 0; i < taken; ++i) out.push_back(from[i * from.size() / taken]);
@@ -36,7 +36,7 @@ std::vector<SurfaceTouch> side_view(const SideViewOptions& options, const Scene&
                      math::sin(azimuth) * math::cos(options.elevation), math::sin(options.elevation));
   const Vector3d right(-math::sin(azimuth), math::cos(azimuth), 0.0);
   const Vector3d up = out.cross(right);
-  const double away = std::max(kAway, 2.0 * radius);  // outside the ball, which may be larger
+  const double away = std::max(kAway, 2.0 * radius);  // outside the ball, which may be large
   const Vector3d eye = centre + away * out;
   const auto side = static_cast<int>(std::lround(std::sqrt(static_cast<double>(options.rays))));
   const Vector3d desk(0.0, 0.0, scene.desk());
@@ -75,7 +75,8 @@ std::vector<SurfaceTouch> thinned_view(const std::vector<SurfaceTouch>& view, st
       if (on_object(ray)) ends.push_back(ray.end());
     }
   }
-  // Three fifths of the rays show where a surface is, a quarter where it ends.
+  // At most three fifths of the rays end on an object and show where its surface is. At most a quarter pass next to an
+  // object and show where it ends.
   std::vector<SurfaceTouch> out;
   double cube = kSide;
   Cloud kept = thinned(ends, cube);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A camera's view of a scene from one side before the first tap: its rays as touches that are free up to their end.
+// A camera's view of a scene from one side, before the first tap. Each ray is stored as a touch whose path is free up
+// to its end.
 #pragma once
 
 #include "solids/solids_options.hpp"
@@ -15,9 +16,9 @@
 
 namespace palpate {
 
-/// Returns the rays of a camera 60 cm from `centre`, or farther for a large ball: a square image of the ball of this
-/// radius around it, row by row. Lengths are relative to the desk. Each ray ends on an object, on the desk, or, if it
-/// meets neither, behind the ball.
+/// Returns the rays of a camera at a distance of 60 cm from `centre`, or of twice `radius` if that is more. The rays
+/// form a square image of the ball around `centre`, row by row. Heights are relative to the desk, metres. Each ray ends
+/// on an object, on the desk, or, if it meets neither, behind the ball.
 std::vector<SurfaceTouch> side_view(const SideViewOptions& options, const Scene& scene, const Eigen::Vector3d& centre,
                                     double radius, Random random);
 

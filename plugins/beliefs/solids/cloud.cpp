@@ -31,7 +31,7 @@ std::array<std::int64_t, 3> cube_of(const Vector3d& point, double side) {
   return out;
 }
 
-constexpr double kFar = 0.1;  ///< metres: larger distances, and distances to an empty cloud, count as this one
+constexpr double kFar = 0.1;  ///< metres: larger distances, and distances to an empty cloud, are set to this value
 
 }  // namespace
 
@@ -100,7 +100,7 @@ std::vector<double> nearest_distances(const Cloud& from, const Cloud& to) {
 
 CloudErrors compare_clouds(const Cloud& belief, const Cloud& truth) {
   constexpr double kNear = 0.005;      // metres: threshold of the F-score
-  constexpr double kThinning = 0.003;  // metres: so that regions where many lines meet the surface do not count more
+  constexpr double kThinning = 0.003;  // metres: avoids a larger weight where many lines meet the surface
   struct Sums {
     double count = 0.0, distance = 0.0, square = 0.0, near = 0.0;
     explicit Sums(const std::vector<double>& distances) : count(static_cast<double>(distances.size())) {

@@ -11,8 +11,8 @@
 
 namespace palpate {
 
-/// Bundles of parallel lines through a ball. Their directions are spread over all in which a tool may move: down,
-/// level, or up by at most 30 degrees. The errors of a surface are measured where these lines first meet it.
+/// Bundles of parallel lines through a ball. Their directions are spread over all directions in which a tool may move:
+/// down, level, or up by at most 30 degrees. The errors of a surface are measured where these lines first meet it.
 struct Bundle {
   Bundle(const Eigen::Vector3d& centre, double radius, int directions, double pitch);
 
@@ -21,7 +21,7 @@ struct Bundle {
 
 using Cloud = std::vector<Eigen::Vector3d>;
 
-/// Returns at most one of the points per cube of this side.
+/// Returns the first point of `points` in each cube of a grid with this side (metres).
 Cloud thinned(const Cloud& points, double side);
 
 /// Returns the distance from each point of `from` to the nearest point of `to`, metres; infinity if that is more than
@@ -30,11 +30,11 @@ std::vector<double> nearest_distances(const Cloud& from, const Cloud& to);
 
 /// Errors between two surfaces, from the nearest-neighbour distances of their points, thinned to one per cube of 3 mm.
 struct CloudErrors {
-  double mean = 0.0;          ///< mean nearest-neighbour distance over the points of both, metres
-  double of_truth = 0.0;      ///< mean over the points of the truth: parts that the belief lacks
-  double of_belief = 0.0;     ///< mean over the points of the belief: parts that the truth lacks
-  double rms = 0.0;           ///< root mean square over the points of both
-  double rms_of_truth = 0.0;  ///< root mean square over the points of the truth
+  double mean = 0.0;          ///< mean nearest-neighbour distance over the points of both clouds, metres
+  double of_truth = 0.0;      ///< mean over the points of the truth, metres; shows parts that the belief lacks
+  double of_belief = 0.0;     ///< mean over the points of the belief, metres; shows parts that the truth lacks
+  double rms = 0.0;           ///< root mean square distance over the points of both clouds, metres
+  double rms_of_truth = 0.0;  ///< root mean square distance over the points of the truth, metres
   double f_score = 0.0;       ///< at 5 mm: harmonic mean of the shares of points within 5 mm of the other cloud
 };
 /// Returns the errors of `belief` against `truth`. The spacing of the points limits the resolution: two clouds of the

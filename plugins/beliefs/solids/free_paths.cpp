@@ -19,12 +19,13 @@ using Eigen::VectorXd;
 struct Passage {
   std::size_t way;
   ResidualKernel::Place place;
-  double distance;      ///< to the assembly
-  double inside = 0.0;  ///< the surface, when that was last looked at
+  double distance;      ///< signed distance to the assembly, metres
+  double inside = 0.0;  ///< depth inside the surface at the last evaluation, metres
   bool taken = false;
 };
 
-/// Returns the points of free paths near or in the assembly. `reach`: of the residual GP by the contacts, metres.
+/// Returns the points of free paths that are near the surface of the assembly or inside it. `reach`: bound of the mean
+/// of the residual GP given the contacts alone, metres.
 std::vector<Passage> passages_of(const ResidualKernel& kernel, const Assembly& solids,
                                  const std::vector<SurfaceTouch>& touches, double reach) {
   constexpr double kStep = 0.0015;
@@ -37,7 +38,7 @@ std::vector<Passage> passages_of(const ResidualKernel& kernel, const Assembly& s
     for (double along = 0.0; along < touches[way].length;) {
       const Vector3d at = touches[way].line.origin + along * touches[way].line.direction;
       const double distance = solids.distance(at);
-      if (!(distance >= -deepest)) {  // the assembly is wrong here, not the residual GP
+      if (!(distance >= -deepest)) {  // here the assembly is wrong and not the residual GP
         out.resize(first);
         break;
       }
@@ -48,7 +49,8 @@ std::vector<Passage> passages_of(const ResidualKernel& kernel, const Assembly& s
   return out;
 }
 
-/// Returns of each stretch of a path that was inside the surface the deepest point; a taken point ends a stretch.
+/// Returns the deepest point of each stretch of a path inside the surface. A point that was added before ends a
+/// stretch.
 std::vector<Passage*> deepest(const std::vector<Passage*>& passages, double noise) {
   std::vector<Passage*> out;
   const Passage* before = nullptr;
@@ -66,9 +68,10 @@ std::vector<Passage*> deepest(const std::vector<Passage*>& passages, double nois
 
 }  // namespace
 
-/// |g(x)| <= ||g|| sqrt(k(x, x)) in the kernel's space, ||g||^2 = w' K w, where (K + N) w is what is known: for
-/// certain, but with many rows several times too much. Where values alone are known, g is larger between them than at
-/// them, by a fifth at most in some hundred fits of runs: half leaves room.
+/// The smaller of two bounds. The first one is certain: |g(x)| <= ||g|| * sqrt(k(x, x)) in the kernel's Hilbert space,
+/// with ||g||^2 = w' * K * w and (K + N) * w = targets. With many rows it is several times too large. The second one is
+/// empirical: between the data, g exceeds its values at the data by at most a fifth in some hundred fits of runs.
+/// kBetween allows a half. If the data contain slopes, kMaxResidual takes the place of the values.
 double ResidualData::reach(const ResidualKernel& kernel) const {
   constexpr double kBetween = 1.5;
   double square = 0.0;
@@ -91,12 +94,13 @@ VectorXd ResidualData::means(const ResidualKernel& kernel, const ResidualKernel:
   return out;
 }
 
-/// With A the covariance of the contacts, noise included, as A = L L', and V = L^-1 of that with the free points, S of
-/// Nonnegative is the covariance of the free points when the contacts are known, d by how much they are inside then.
+/// Let A = L * L' be the covariance of the contacts, noise included, and V = L^-1 * C, where C is the covariance
+/// between the contacts and the free points. Then S of Nonnegative is the covariance of the free points given the
+/// contacts, with their noise. d is the depth of the free points inside the surface given the contacts.
 FreePaths hold_free_paths(const ResidualKernel& kernel, const Assembly& solids,
                           const std::vector<SurfaceTouch>& touches, double contact_noise, ResidualData& known) {
-  // No path is known better than by a tenth of a millimetre: that keeps the problem far from singular, however many
-  // points hold side by side.
+  // The noise of a path is at least 0.1 mm. This keeps the problem far from singular, however many adjacent points hold
+  // the surface back.
   constexpr double kLeast = 1e-4;
   const double noise = std::max(kLeast, contact_noise);
   std::vector<Passage> passages = passages_of(kernel, solids, touches, known.reach(kernel));
@@ -116,7 +120,7 @@ FreePaths hold_free_paths(const ResidualKernel& kernel, const Assembly& solids,
       some[i]->inside = means(static_cast<Eigen::Index>(i)) - some[i]->distance;
   };
   const auto look_at_all = [&] {
-    constexpr double kClose = 0.003;  // what holds elsewhere moves the surface by less, as a rule, if it does outwards
+    constexpr double kClose = 0.003;  // metres: held points elsewhere usually move the surface outwards by less
     look_at(all);
     close.clear();
     std::copy_if(all.begin(), all.end(), std::back_inserter(close),

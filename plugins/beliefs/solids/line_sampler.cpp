@@ -19,7 +19,7 @@ using Eigen::Vector3d;
 /// Sine of the steepest upward direction: tools move down, level, or up by at most 30 degrees.
 constexpr double kSteepestUp = 0.5;
 
-/// Returns a uniformly drawn line with a direction in which a tool may come.
+/// Returns a uniformly drawn line with a direction in which a tool may move.
 Line random_line(const Region& region, Random& random) {
   while (true) {
     const double z = -1.0 + (1.0 + kSteepestUp) * random.uniform();
@@ -68,7 +68,7 @@ void append(const Candidates& from, const Eigen::Array<bool, Eigen::Dynamic, 1>&
 }  // namespace
 
 Region::Region(const Area& area) {
-  constexpr double kShare = 0.46;  // share of the longer side, along which objects may be anywhere
+  constexpr double kShare = 0.46;  // radius as a share of the longer side, along which objects may be anywhere
   constexpr double kHeight = 0.65;
   radius = kShare * std::max(area.width, area.depth);
   centre = {area.width / 2, area.depth / 2, kHeight * radius};

@@ -18,7 +18,7 @@
 namespace palpate {
 
 /// The ball in which objects are searched. Its centre is above the middle of the area, at 0.65 of its radius above the
-/// desk. Lengths are relative to the desk.
+/// desk. Heights are relative to the desk.
 struct Region {
   explicit Region(const Area& area);
   Eigen::Vector3d centre;
@@ -33,9 +33,9 @@ struct SampledLines {
   std::vector<bool> anywhere;
 };
 
-/// Draws `count` lines that `filter` accepts. `desk`: its height, metres. Half of the lines, the first included, are
-/// drawn at random, the others along normals of `surface`. Without a surface, all are random. Throws Error if the
-/// filter rejects nearly all.
+/// Draws `count` lines that `filter` accepts. `desk`: height of the desk, metres. Half of the lines, the first
+/// included, are drawn at random, the others along normals of `surface`. Without a surface, all are random. Throws
+/// Error if the filter rejects nearly all.
 SampledLines sample_lines(const Region& region, double desk, std::size_t count, const Assembly* surface, Random& random,
                           const LineFilter& filter);
 

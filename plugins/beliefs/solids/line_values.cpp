@@ -60,7 +60,8 @@ Eigen::VectorXd LineValues::deviations(const ResidualGp& residual_gp) {
 }
 
 Eigen::VectorXd LineValues::uncertainty(const Eigen::VectorXd& deviations) const {
-  // The most is 1, whatever the unit of the deviations; lines at a slope tell less of the surface.
+  // The largest value is 1, whatever the unit of the deviations. Lines at an angle to the normal reveal less of the
+  // surface, so their value is 0.
   constexpr double kAlong = 0.999;
   const double most = deviations.maxCoeff();
   const double scale = most > 0.0 ? 1.0 / most : 0.0;
@@ -72,7 +73,7 @@ Eigen::VectorXd LineValues::reductions(const Solids& solids, const ResidualGp& r
   constexpr std::size_t kMost = 300;
   constexpr double kSquarely = 0.5;
   const Representatives some = representatives(places_, kMost);
-  factors_.redundant_taps = 0;  // as it is now
+  factors_.redundant_taps = 0;  // the number refers to this call alone
   const Eigen::VectorXd expected = expected_reductions(solids, residual_gp, some.places, &factors_);
   Eigen::VectorXd out = Eigen::VectorXd::Zero(distance_.size());
   for (std::size_t i = 0; i < meets_.size(); ++i) {
@@ -85,7 +86,7 @@ Eigen::VectorXd LineValues::reductions(const Solids& solids, const ResidualGp& r
 Eigen::VectorXd LineValues::discovery(const SampledLines& lines, const Solids& solids, Random random) const {
   constexpr int kDraws = 1000;
   constexpr double kMinEarlier = 0.003;  // metres: a primitive counts if it makes the contact earlier by more than this
-  constexpr double kFarthest = 0.03;     // metres: larger differences count as this one
+  constexpr double kFarthest = 0.03;     // metres: larger differences are set to this value
   const Eigen::Index count = distance_.size();
   Eigen::VectorXd out = Eigen::VectorXd::Zero(count);
   const std::vector<Primitive> primitives = solids.undiscovered(solids.best(), kDraws, random);
@@ -115,7 +116,7 @@ Eigen::VectorXd LineValues::discovery(const SampledLines& lines, const Solids& s
       meets.push_back(i);
       if (lines.anywhere[static_cast<std::size_t>(i)]) moves += std::min(kFarthest, earlier);
     }
-    // Mean over the random lines.
+    // Mean over the random lines, times the probability of this draw.
     moves /= anywhere * kDraws;
     for (const Eigen::Index i : meets) out(i) += moves;
   }

@@ -18,19 +18,19 @@
 
 namespace palpate {
 
-/// N values per quantity. A quantity is empty before compute(), and if `reads` does not contain it.
+/// One value per line for each quantity. A quantity is empty before compute(), and if `reads` does not contain it.
 class LineValues {
  public:
-  /// `desk`: its height, metres.
+  /// `desk`: height of the desk, metres.
   explicit LineValues(double desk) : desk_(desk) {}
 
   /// Computes the quantities of `lines` that are in `reads`. `random` is used for expected_discovery.
   void compute(const SampledLines& lines, const Solids& solids, const ResidualGp& residual_gp, const QuantitySet& reads,
                Random random);
 
-  /// Returns the quantities of the last compute(), among them names that have no array.
+  /// Returns `reads` of the last compute(). It may contain names of quantities without an array.
   const QuantitySet& reads() const { return reads_; }
-  /// Returns the arrays of those of them that have one.
+  /// Returns the computed arrays by the names of their quantities.
   const std::map<std::string, Eigen::VectorXd, std::less<>>& arrays() const { return arrays_; }
 
   /// Return the number of variances that rounding made negative in the last compute(), and the report of its
@@ -42,7 +42,7 @@ class LineValues {
   Line line(const SampledLines& lines, Eigen::Index index) const;
   void find_contacts(const SampledLines& lines, const Assembly& best);
   Eigen::VectorXd deviations(const ResidualGp& residual_gp);
-  /// Returns (deviation / largest)^2 of lines along the normal, else 0.
+  /// Returns (deviation / largest deviation)^2 for lines along the surface normal, else 0.
   Eigen::VectorXd uncertainty(const Eigen::VectorXd& deviations) const;
   Eigen::VectorXd reductions(const Solids& solids, const ResidualGp& residual_gp);
   Eigen::VectorXd discovery(const SampledLines& lines, const Solids& solids, Random random) const;
@@ -50,10 +50,11 @@ class LineValues {
   double desk_;
   QuantitySet reads_;
   std::map<std::string, Eigen::VectorXd, std::less<>> arrays_;
-  Eigen::VectorXd distance_;          ///< along each line to the most probable assembly, or to the end
-  ResidualGp::Places places_;         ///< where lines meet it
-  std::vector<Eigen::Index> meets_;   ///< the lines that meet it there
-  Eigen::VectorXd incidence_cosine_;  ///< 0 without an object
+  /// metres along each line to the most probable assembly, to the desk or to the end of the line
+  Eigen::VectorXd distance_;
+  ResidualGp::Places places_;         ///< points where lines meet the most probable assembly
+  std::vector<Eigen::Index> meets_;   ///< index of the line of each point in places_
+  Eigen::VectorXd incidence_cosine_;  ///< 0 for lines that meet no object
   int clamped_ = 0;
   FactorReport factors_;
 };

@@ -10,8 +10,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// The function f. The residual GP is evaluated only near the assembly's surface; further away it changes no sign.
-/// Positions are evaluated in batches, which is faster.
+/// The function f (see mesh.hpp). The residual GP is evaluated only near the assembly's surface; further away it cannot
+/// change the sign of f. Positions are evaluated in batches, which is faster.
 class SignedSurface {
  public:
   SignedSurface(const Assembly& solids, const ResidualGp& residual_gp)
@@ -43,8 +43,8 @@ class SignedSurface {
   /// tetrahedron.
   std::vector<Vector3d> normals(const std::vector<Vector3d>& at) const {
     constexpr double kStep = 1e-5;
-    // A distance has gradient 1, and the residual GP has less. A steeper difference is not a gradient: f jumps there,
-    // as the assembly's normal does.
+    // The gradient of a distance has length 1, and the gradient of the residual GP is shorter. A longer difference
+    // quotient is not a gradient: f jumps there, because the assembly's normal jumps.
     constexpr double kSteepest = 3.0;
     static const std::array<Vector3d, 4> corners{Vector3d(1, -1, -1), Vector3d(-1, -1, 1), Vector3d(-1, 1, -1),
                                                  Vector3d(1, 1, 1)};
@@ -96,8 +96,8 @@ struct Edge {
   Vector3d at(double part, double side) const { return from + part * side * Vector3d::Unit(axis); }
 };
 
-/// Returns the zero of f on each edge, at least kRim away from its ends, where vertices of several edges would
-/// coincide.
+/// Returns the zero of f on each edge. It is moved at least kRim of the edge's length away from both ends, where
+/// vertices of several edges would coincide.
 std::vector<Vector3d> roots(const SignedSurface& field, std::vector<Edge> edges, double side) {
   constexpr double kRim = 0.01;
   constexpr double kExact = 1e-6;
@@ -107,7 +107,7 @@ std::vector<Vector3d> roots(const SignedSurface& field, std::vector<Edge> edges,
     std::vector<Vector3d> places;
     for (Edge& one : edges) {
       if (one.done) continue;
-      // Alternates secant and bisection steps, because f has kinks, and jumps where normals do.
+      // Alternates secant and bisection steps, because f has kinks, and jumps where normals jump.
       const bool secant = step % 2 == 0 && std::abs(one.at_low) < kNoHit && std::abs(one.at_high) < kNoHit;
       one.share = secant ? one.low + (one.high - one.low) * one.at_low / (one.at_low - one.at_high)
                          : 0.5 * (one.low + one.high);
@@ -140,8 +140,9 @@ std::size_t edge_between(int one, int other) {
   return static_cast<std::size_t>(edge);
 }
 
-/// The rings of a cube, from its inner nodes. `next` maps each edge with a vertex to the next one of its ring,
-/// counter-clockwise seen from outside the solid, others to -1. `crowded` marks edges on a face with four vertices.
+/// The rings of vertices of a cube, computed from its inner nodes. `next` maps each edge with a vertex to the next edge
+/// of its ring, counter-clockwise seen from outside the solid, and all other edges to -1. `crowded` marks edges on a
+/// face with four vertices.
 struct Rings {
   std::array<int, kEdges> next{};
   std::array<bool, kEdges> crowded{};
@@ -205,8 +206,8 @@ Crossings cross_surface(const Assembly& solids, const ResidualGp& residual_gp, d
   all.low.z() = 0.0;
   if (!(all.high > all.low).all()) return out;
   for (const Eigen::Array3d extent = all.high - all.low; (extent / side + 4.0).prod() > kMostNodes;) side *= 1.1;
-  // The grid has one more layer of nodes around this box. Its lowest nodes are half a cube below the desk, so none lies
-  // on it.
+  // The grid has one more layer of nodes around this box. Its lowest nodes are half a cube below the desk, so no node
+  // lies on the desk.
   out.side = side;
   out.origin = all.low - 1.5 * side;
   out.origin.z() = -0.5 * side;

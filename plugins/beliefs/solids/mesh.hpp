@@ -21,7 +21,7 @@
 namespace palpate {
 
 /// A grid of cubes: its nodes inside the surface, and the crossings of the surface with its edges. Lengths are in
-/// metres, relative to the desk. A mesh consists of these data and of triangles.
+/// metres, heights relative to the desk. A mesh consists of these data and of triangles.
 struct Crossings {
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< position of the first node
   double side = 0.0;                                 ///< side of a cube
@@ -41,11 +41,11 @@ struct Crossings {
   }
 };
 
-/// Returns the crossings of the surface of `solids`, corrected by `residual_gp`, which was fitted to it. Cubes have
-/// side `side`. If more than four million were needed, they are larger (see Crossings::side). Four million cubes of 2
-/// mm fill a cube of 31 cm. Thinner walls may have holes; the mesh is closed around them. Normals are gradients of f;
-/// where f jumps, as at edges of primitives, the normals of the assembly replace them. SolidsBelief computes the
-/// standard deviations, from all assemblies.
+/// Returns the crossings of the surface of `solids`, corrected by `residual_gp`, which was fitted to `solids`. Cubes
+/// have side `side`. If the grid needed more than four million cubes, the cubes are larger (see Crossings::side). Four
+/// million cubes of 2 mm fill a cube of 31 cm. Walls thinner than a cube may have holes; the mesh is closed around the
+/// holes. Normals are gradients of f; where f jumps, as at edges of primitives, the normals of the assembly replace
+/// them. SolidsBelief computes the standard deviations, from all assemblies.
 Crossings cross_surface(const Assembly& solids, const ResidualGp& residual_gp, double side);
 
 /// Returns the closed mesh, with heights raised by `desk`, the desk's height in the scene, metres. A ring gets an

@@ -50,8 +50,8 @@ VectorXd Nonnegative::unbounded() const {
 void Nonnegative::settle() {
   while (true) {
     const VectorXd best = unbounded();
-    // Moves towards it until the first value reaches 0. That unknown is released, even if rounding leaves its value
-    // positive.
+    // Moves the values towards `best` until the first value reaches 0. That unknown is released, even if rounding
+    // leaves its value positive.
     double share = 1.0;
     Index first = -1;
     for (Index i = 0; i < best.size(); ++i) {
@@ -81,7 +81,7 @@ void Nonnegative::settle() {
 void Nonnegative::solve() {
   if (d_.size() == 0) return;
   const double rounding = 1e-13 * d_.cwiseAbs().maxCoeff();
-  const auto cost = [&] { return -0.5 * values_.dot(VectorXd(d_(held_))); };  // only at an optimum
+  const auto cost = [&] { return -0.5 * values_.dot(VectorXd(d_(held_))); };  // valid only at an optimum
   std::vector<bool> refused(is_.size());
   while (true) {
     const VectorXd pull = d_ - s_(Eigen::all, held_) * values_;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Minimises a quadratic form over nonnegative unknowns, whose number grows:
 //
-//     1/2 l' S l - d' l,   l >= 0
+//     1/2 * l' * S * l - d' * l,   l >= 0
 //
-// It uses the active-set method of Lawson and Hanson (Solving Least Squares Problems, 1974, chapter 23), each time from
+// It uses the active-set method of Lawson and Hanson (Solving Least Squares Problems, 1974, chapter 23), started from
 // the last optimum. A step changes the set of positive unknowns, and is kept only if it lowers the form by more than
 // rounding. So no set occurs twice, and the loop ends without a limit on the number of steps.
 #pragma once

@@ -7,11 +7,13 @@
 namespace palpate {
 namespace {
 
-// Prior deviations. A lag of 0.35 s at 2.4 cm/s is 8 mm; what is as soft as 1500 N/m gives way by 0.7 mm a newton.
-// Offset in metres, compliance in metres per newton in place of the drift, noise in metres along the path.
+// Prior standard deviations: offset in metres, compliance in metres per newton (in place of the drift), and noise in
+// metres along the path. A lag of 0.35 s at 2.4 cm/s is an offset of 8 mm. A stiffness of 1500 N/m is a compliance of
+// 0.7 mm/N. The noise is only that of a pose: the floor of a vessel, a few millimetres above the desk, must not be
+// mistaken for the desk.
 constexpr OffsetPrior kPrior{0.006, 0.0005, 0.0012};
-// The floor of a vessel is a few millimetres above the desk, and not taken for it: the noise is that of a pose, no
-// more. Of flatter ways what the desk's height errs by is too much along the way.
+// Smallest downward component of the direction. On flatter paths, an error of the desk's height is too large along the
+// path.
 constexpr double kSteep = 0.6;
 constexpr double kMeasurable = 1e-6;  // metres: smaller values are rounding
 
@@ -19,7 +21,8 @@ constexpr double kMeasurable = 1e-6;  // metres: smaller values are rounding
 
 Overtravel::Overtravel(double tip, double most) : tip_(tip), most_(most), offset_model_(kPrior) {}
 
-/// For a round tip, which is higher than its foremost point if the tool comes at an angle.
+/// Returns the height of the lowest point of the round tip. It is below the foremost point if the tool moves at an
+/// angle.
 double Overtravel::lowest_point(const SurfaceTouch& touch) const {
   return touch.end().z() - tip_ * (1.0 - std::abs(touch.line.direction.z()));
 }
@@ -39,8 +42,9 @@ void Overtravel::add(const SurfaceTouch& told, double force) {
   const double height = lowest_point(told);
   const double steep = -told.line.direction.z();
   if (steep < kSteep || height > margin()) return;
-  // Each contact has a position of its own. OffsetModel drops low contacts near higher ones as rims. This suits taps
-  // from above, but here it would drop the desk near every wall.
+  // Each contact has a position of its own. Otherwise OffsetModel would leave out low contacts near higher ones,
+  // because they may be at a rim. That suits taps from above, but here it would leave out contacts with the desk near
+  // every wall.
   constexpr double kApart = 1.0;
   offset_model_.add({kApart * static_cast<double>(lows_.size()), 0.0}, force, height / steep);
   lows_.push_back({height, steep, force});

@@ -3,8 +3,8 @@
 // desk, whose height is known, and classifies which contacts are with the desk.
 //
 // The touched surface yields under the force, and an arm that lags behind its set-point or detects late goes further.
-// So a contact is reported too deep by a + b F, where F is its force. OffsetModel (gp/offset_model.hpp) learns a and b
-// as its offset and drift, with force in the place of time. The estimate is at least 0, because a tool cannot stop
+// So a contact is reported too deep by a + b * F, where F is its force. OffsetModel (gp/offset_model.hpp) learns a and
+// b as its offset and drift, with force in the place of time. The estimate is at least 0, because a tool cannot stop
 // before the surface. If contacts with the desk are reported on the desk, nothing is changed.
 //
 // The spread is the standard deviation from one contact to the next. Only contacts reported below the desk determine
@@ -35,7 +35,7 @@ class Overtravel {
   /// Returns the length to subtract from a contact with this force, metres.
   double at(double force) const;
   /// Returns the standard deviation of contact heights from one contact to the next, metres. It is at least
-  /// kLeastSpread, as the desk has shown no smaller one.
+  /// kLeastSpread.
   double spread() const { return spread_; }
   static constexpr double kLeastSpread = 0.0005;
 

@@ -22,7 +22,7 @@ void keep(double begin, double begin_cosine, double end, double end_cosine, Chor
   if (end < chord.end) chord.end = end, chord.end_cosine = end_cosine;
 }
 
-/// Clips `chord` to low <= origin + slope x <= high.
+/// Clips `chord` to the distances x with low <= origin + slope * x <= high.
 void clip(double origin, double slope, double low, double high, Chord& chord) {
   if (slope == 0.0) {
     if (origin < low || origin > high) chord = {};
@@ -33,8 +33,8 @@ void clip(double origin, double slope, double low, double high, Chord& chord) {
   keep(std::min(one, other), std::abs(slope), std::max(one, other), std::abs(slope), chord);
 }
 
-/// Clips `chord` to where the weighted norm of from + x along is at most 1. `along` is the part of a unit direction in
-/// these dimensions, not normalised.
+/// Clips `chord` to the distances x at which the norm of (`from` + x * `along`) / `half` is at most 1. `along` is the
+/// part of a unit direction in these dimensions, not normalised.
 template <class Vector>
 void clip_round(const Vector& from, const Vector& along, const Vector& half, Chord& chord) {
   const Vector p = from.cwiseQuotient(half);
@@ -82,7 +82,7 @@ Chord within(Primitive::Form form, const Vector3d& half, const Vector3d& from, c
   return out;
 }
 
-/// Returns the distance to the product of two convex sets, from the distances to each.
+/// Returns the distance to the Cartesian product of two convex sets, from the distances to each.
 double of_both(double one, double other) {
   const double outside = length_of(std::max(one, 0.0), std::max(other, 0.0));
   return outside + std::min(0.0, std::max(one, other));
@@ -186,8 +186,8 @@ double Primitive::aside(const Line& line, double most) const {
     }
     return least;
   }
-  // Searches the direction with the least value: first among twelve, then between them. It uses sums of known angles,
-  // because this search dominates the run time of runs from any side.
+  // Searches for the sideways direction with the least value: first among twelve directions, then between them. The
+  // search adds known angles, because it dominates the run time of runs from any side.
   static const std::array<Turned, 12> directions = [] {
     std::array<Turned, 12> out;
     for (std::size_t k = 0; k < out.size(); ++k) out[k] = turned_by(kHalfTurn / 6.0 * static_cast<double>(k));

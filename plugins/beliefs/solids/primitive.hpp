@@ -26,8 +26,8 @@ struct Chord {
 };
 
 /// A box, a cylinder or an ellipsoid with any pose, solid or hollow. A hollow one is a vessel open at its upper end,
-/// with a wall around and below. A hollow ellipsoid keeps only its lower half: a bowl. Lengths in metres, relative to
-/// the desk.
+/// with a wall at its sides and at its bottom. A hollow ellipsoid keeps only its lower half: a bowl. Lengths are in
+/// metres, heights relative to the desk.
 struct Primitive {
   enum class Form { box, cylinder, ellipsoid };
   Form form = Form::box;
@@ -38,16 +38,18 @@ struct Primitive {
 
   bool hollow() const { return wall > 0.0; }
   double volume() const;  ///< including the hollow, cubic metres
-  /// Returns its extent from its centre along a direction of its own frame, the hollow included.
+  /// Returns the largest extent from the centre along the unit vector `own` in its own frame, metres. The hollow counts
+  /// as solid.
   double reach(const Eigen::Vector3d& own) const;
 
   /// Returns the parts of a line in the solid, in order: none, one, or two if it passes through the hollow.
   std::array<Chord, 2> inside(const Line& line) const;
-  /// Returns the distance at which a line first meets it; infinity if it misses.
+  /// Returns the distance at which a line first meets the primitive; infinity if the line misses.
   double first_intersection(const Line& line) const;
 
-  /// Returns how far a line through it would have to be moved sideways to miss it, metres, with the hollow counted as
-  /// solid. At most 0 if the line misses; `most` if it is more. Exact for boxes, else a close upper bound.
+  /// Returns the sideways shift after which a line through the primitive would miss it, metres. The hollow counts as
+  /// solid. The result is at most 0 if the line misses, and never more than `most`. It is exact for boxes, else a close
+  /// upper bound.
   double aside(const Line& line, double most = kNoHit) const;
 
   /// Returns the approximate signed distance of a point, metres, negative inside. It is exact at the surface and has

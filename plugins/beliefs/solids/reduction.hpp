@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
 // Expected reduction of the uncertainty of a surface by one tap.
 //
-// The offset of the true surface outside the surface of the most probable assembly is modelled as a GP. Its mean is the
-// mean of the residual GP; its covariance is
+// The signed distance (positive outwards) from the surface of the most probable assembly to the true surface is
+// modelled as a GP. Its mean is the mean of the residual GP; its covariance is
 //
-//     k(x, x') + (1 / K) sum over assemblies of d_j(x) d_j(x')
+//     k(x, x') + (1 / K) * sum over assemblies j of d_j(x) * d_j(x')
 //
-// where k is the residual GP's prior, and d_j(x) is the offset of the surface of assembly j near x, clipped to 2 cm. So
-// a touch informs about other positions as far as the residual GP is smooth, and as far as the assemblies agree. With
-// an additional contact at a position y, with the same noise, the variance is
+// where k is the residual GP's prior, K is the number of assemblies, and d_j(x) is the same distance for the surface of
+// assembly j near x, clipped to 2 cm. So a touch informs about other positions as far as the residual GP is smooth, and
+// as far as the assemblies agree. With an additional contact at a position y, with the same noise, the variance is
 //
 //     Var(x | y) = Var(x) - Cov(x, y)^2 / (Var(y) + noise^2),
 //
@@ -33,9 +33,9 @@ namespace palpate {
 Eigen::VectorXd expected_reductions(const Solids& solids, const ResidualGp& residual_gp,
                                     const ResidualGp::Places& places, FactorReport* report = nullptr);
 
-/// A subset of the places, evenly spread: the first place in each cube for each direction of the normal. The cubes have
-/// sides of at least 8 mm, and as large as needed for at most `most` places. `stands_for` maps each place to the index
-/// of its representative.
+/// A subset of the places, evenly spread: the first place in each cube for each direction of the normal. The side of
+/// the cubes is at least 8 mm, and large enough that at most `most` places remain. `stands_for` maps each place to the
+/// index of its representative.
 struct Representatives {
   ResidualGp::Places places;
   std::vector<std::size_t> stands_for;

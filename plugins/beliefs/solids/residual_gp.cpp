@@ -19,8 +19,8 @@ using Eigen::MatrixXd;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-/// The lower triangle of a covariance, row by row, each diagonal entry with its noise and a share `jitter` of itself.
-/// Says which rows it has: those with which it is not positive definite in double precision are left out.
+/// Factorises the rows `which` of a covariance. Each diagonal entry gets its noise and a share `jitter` of itself.
+/// Returns the factorised rows. Rows with which the matrix is not positive definite in double precision are left out.
 std::vector<int> factorise(Factor& factor, const MatrixXd& covariance, const std::vector<int>& which,
                            const VectorXd& noise, double jitter) {
   factor.clear();
@@ -44,7 +44,8 @@ std::vector<ResidualGp::Row> ResidualGp::contacts_of(const Assembly& solids,
     const double off = solids.distance(place.at);
     if (!(std::abs(off) <= kMaxResidual)) continue;
     out.push_back({place, Vector3d::Zero(), off, settings_.noise});
-    // Where the assembly's surface is turned by more than that, it is another than the one that is felt.
+    // Smallest cosine between the measured normal and the assembly's normal. Below it, the assembly's nearest surface
+    // is not the one that was touched.
     constexpr double kTurned = 0.5;
     if (!touch.normal || touch.normal->dot(place.normal) < kTurned) continue;
     if (!kernel_.has_gradient()) {

@@ -1,25 +1,28 @@
 // SPDX-License-Identifier: MIT
-// By how much the surface is off the simple solids: a Gaussian process over the signed distance whose mean is theirs.
+// Residual GP: a Gaussian process over the signed distance to the surface. Its prior mean is the distance to the simple
+// solids.
 //
-//     f(x) = m(x) - g(x),   g ~ GP(0, s^2 k(|x - x'|) (1 + n(x) . n(x')) / 2)
+//     f(x) = m(x) - g(x),   g ~ GP(0, s^2 * k(|x - x'|) * (1 + n(x) . n(x')) / 2)
 //
-// m is the distance to the assembly, n its gradient of unit length; the surface is where f is 0. The factor of the
-// normals, one half of a constant and of a linear kernel, keeps what is learnt of one side of a thin wall from the
-// other. As a product of kernels of space and of the normals it is positive definite wherever k is so in space.
+// m is the signed distance to the assembly, n its gradient of unit length; the surface is where f is 0. The factor with
+// the normals is half the sum of a constant kernel and a linear kernel. It separates the two sides of a thin wall: data
+// on one side do not affect the other. The product of a kernel of the position and a kernel of the normal is positive
+// definite wherever k is positive definite in space.
 //
-// What is known of g, in the order of the rows:
+// Data about g, in the order of the rows:
 //
-//     a contact             f = 0:  g = m(x), with the noise of a contact
-//     a normal felt there   f rises along it alone: t . grad g = t . grad m for two directions t across it, with the
-//                           normals of the assembly held
-//     a free way            f >= 0: g <= m(x), at points of it; one that would be broken holds as a contact does, the
-//                           others say nothing
+//     contact            f = 0: g = m(x), with the noise of a contact
+//     measured normal    f changes only along the normal: t . grad g = t . grad m for two directions t perpendicular to
+//                        it. The normals n of the assembly are treated as constant.
+//     free path          f >= 0: g <= m(x) at points of the path. A point that would violate this holds the surface
+//                        back like a contact; the other points have no effect.
 //
-// So the mean is the most probable g where a free point that lies inside by d costs d^2 / 2 noise^2, as a contact that
-// is off by d does, and one outside costs nothing: the optimum of a strictly convex problem, found exactly. Of each
-// stretch of a way inside the surface the deepest point is taken, until no way is inside by more than its noise but at
-// points that were. The variance is that of a process which knows contacts and normals alone: what a free way takes off
-// it is less than a contact in its place would, and where it is none, nothing.
+// The mean is the most probable g if a free point at the depth d inside the surface costs d^2 / (2 * noise^2), like a
+// contact with the error d, and a free point outside costs nothing. This is the optimum of a strictly convex problem,
+// and it is found exactly. From each stretch of a path inside the surface, the deepest point is added. This is repeated
+// until no path is inside by more than its noise, except at points that were added. The variance is that of a GP with
+// contacts and normals alone. A free path would reduce the variance by less than a contact at the same position, and
+// not at all where it does not hold the surface back.
 #pragma once
 
 #include "regular/regular_factor.hpp"
@@ -39,9 +42,9 @@
 namespace palpate {
 
 struct ResidualGpSettings {
-  double most = 0.006;    ///< largest signal, metres: it is that of the touches, if that is less
-  double noise = 0.0005;  ///< of a contact, metres
-  double tilt = 0.02;     ///< noise of a normal that is felt, radian
+  double most = 0.006;    ///< metres, upper limit of the signal, which is the RMS distance of the contacts
+  double noise = 0.0005;  ///< standard deviation of a contact, metres
+  double tilt = 0.02;     ///< standard deviation of a measured normal, radians
 };
 
 class ResidualGp {
@@ -54,50 +57,50 @@ class ResidualGp {
   ResidualGp(std::shared_ptr<const Kernel> kernel, const ResidualGpSettings& settings)
       : kernel_(std::move(kernel)), settings_(settings) {}
 
-  /// Of contacts from the next fit on, metres.
+  /// Sets the noise of contacts for all later fits, metres.
   void set_noise(double noise) { settings_.noise = noise; }
 
-  /// The process over `solids` after these touches; nothing is kept of either but what follows from them. Throws Error
-  /// where a touch has a normal and the kernel no slopes.
+  /// Fits the GP over `solids` to these touches. It keeps no reference to either. Throws Error if a touch has a normal
+  /// but the kernel has no gradient.
   void fit(const Assembly& solids, const std::vector<SurfaceTouch>& touches);
 
-  /// By how much the surface lies outside the assembly's, near such a place of it, metres.
+  /// Returns the mean of g: the distance by which the surface lies outside the assembly's surface near `place`, metres.
   double mean(const Place& place) const;
-  /// What contacts are off as a rule, and the standard deviation before any touch: that times the kernel's.
+  /// Return the RMS distance of the contacts from the assembly, within limits, and the prior standard deviation of g:
+  /// this distance times the kernel's standard deviation. Metres.
   double signal() const { return kernel_.signal(); }
   double deviation() const { return kernel_.deviation(); }
-  /// How far from the assembly's the surface may be, metres: mean() is between -reach() and reach(). Mesh, volume
-  /// and free ways ask no farther.
+  /// Returns the largest distance between the surface and the assembly's surface, metres: mean() is between -reach()
+  /// and reach(). Mesh, volume and free paths evaluate the GP only within this distance.
   double reach() const { return known_.reach(kernel_); }
 
-  // Of many at once, which is much quicker.
+  // Functions for many places at once, which are much faster.
   Eigen::VectorXd means(const Places& places) const { return known_.means(kernel_, places); }
   struct Posterior {
     Eigen::VectorXd mean, variance;
-    int clamped = 0;  ///< variances that rounding had taken below 0, and that are 0
+    int clamped = 0;  ///< number of variances that were negative because of rounding and were set to 0
   };
   Posterior posterior(const Places& places) const;
 
-  /// The covariance of g between all of these before any touch, with the signal of the last fit, noise left out.
+  /// Returns the prior covariance of g between all rows, with the signal of the last fit and without noise.
   Eigen::MatrixXd covariance(const std::vector<Row>& rows) const {
     const ResidualKernel::Table table = ResidualKernel::table_of(rows);
     return kernel_.covariances(table, table);
   }
-  /// Of a contact, metres.
+  /// Returns the standard deviation of a contact, metres.
   double noise() const { return settings_.noise; }
 
-  /// The data that hold and are not set aside.
+  /// Returns the data in use: contacts, normals, and the points of free paths that hold the surface back.
   const std::vector<Row>& rows() const { return known_.rows; }
-  /// The free paths of the last fit. Points that hold are among the rows.
+  /// Returns the free paths of the last fit. Points that hold the surface back are among rows().
   const FreePaths& free_paths() const { return free_paths_; }
 
-  /// What is added to the diagonal by need, as a share of each entry, and how often that was raised, all fits together;
-  /// how often the matrix was singular even so, and how many rows do not enter now for that. Free ways have no part in
-  /// it but of the last: a point with which the matrix would be singular is set aside.
+  /// Returns the report of the factorisations over all fits. Its jitter is a share of each diagonal entry. Free paths
+  /// only contribute to the number of rows that are left out: points with which the matrix would be singular.
   const FactorReport& report() const { return report_; }
 
  private:
-  /// With as much jitter as it takes, and as many rows as it allows.
+  /// Factorises with as much jitter as needed. If no jitter is sufficient, leaves rows out.
   void take_in(std::vector<Row> rows);
   std::vector<Row> contacts_of(const Assembly& solids, const std::vector<SurfaceTouch>& touches) const;
 

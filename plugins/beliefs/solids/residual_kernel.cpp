@@ -13,7 +13,8 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// At distances that any length scale may have, in some directions, from two places.
+/// Returns whether the kernel depends on the distance alone. Compares covariances over the distances of all possible
+/// length scales, in four directions, from two positions.
 bool knows_distances_alone(const Kernel& kernel) {
   Eigen::MatrixXd one(1, 1);
   const auto between = [&](double x, double y, double dx, double dy) {
@@ -86,7 +87,7 @@ void ResidualKernel::covariances(const Table& a, const Table& b, Points& apart, 
       for (Eigen::Index i = 0; i < n; ++i) {
         const Eigen::Index pair = j * n + i;
         const auto way = a.at.row(i) - b.at.row(j);
-        // Of which slope: where there is none these are 0.
+        // Components of the difference along the directions of the two slopes. For a value, the component is 0.
         const double from = way.dot(a.along.row(i));
         const double to = way.dot(b.along.row(j));
         if (a.along.row(i).isZero(0.0)) {
@@ -95,7 +96,7 @@ void ResidualKernel::covariances(const Table& a, const Table& b, Points& apart, 
           out(i, j) = -across(pair) * from;
         } else {
           const double r = apart(pair, 0);
-          const double both = r > 0.0 ? (from / r) * (to / r) : 0.0;  // at 0 distance `along` and `across` are alike
+          const double both = r > 0.0 ? (from / r) * (to / r) : 0.0;  // at distance 0, `along` equals `across`
           out(i, j) = across(pair) * a.along.row(i).dot(b.along.row(j)) + (along(pair) - across(pair)) * both;
         }
       }

@@ -20,8 +20,8 @@ namespace palpate {
 
 class ResidualKernel {
  public:
-  /// The kernel is evaluated at points of the desk as far apart as those in space. Throws Error unless the kernel
-  /// depends on the distance alone.
+  /// Evaluates the kernel at points of the desk that have the same distance as the points in space. Throws Error unless
+  /// the kernel depends on the distance alone.
   explicit ResidualKernel(std::shared_ptr<const Kernel> kernel);
 
   struct Place {
@@ -29,7 +29,7 @@ class ResidualKernel {
   };
   using Places = std::vector<Place>;
 
-  /// A datum: the value of g or, where `along` is not 0, its slope in that direction.
+  /// A datum: the value of g or, if `along` is not 0, its slope in that direction.
   struct Row {
     Place place;
     Eigen::Vector3d along = Eigen::Vector3d::Zero();
@@ -38,7 +38,7 @@ class ResidualKernel {
     bool free = false;   ///< a point of a free path
   };
 
-  /// Rows side by side: places, normals, and directions of slopes, one in each row.
+  /// Rows as matrices: the places, normals and directions of slopes, one row per datum.
   struct Table {
     Eigen::MatrixX3d at, normal, along;
     bool slopes = false;
@@ -48,18 +48,18 @@ class ResidualKernel {
   bool has_gradient() const { return kernel_->has_gradient(); }
   void set_signal(double signal) { signal_ = signal; }
   double signal() const { return signal_; }
-  /// Returns the standard deviation before any touch, metres.
+  /// Returns the prior standard deviation of g, metres.
   double deviation() const { return signal_ * std::sqrt(unit_); }
 
-  /// Returns the covariances of g before any touch.
+  /// Returns the prior covariances of g.
   Eigen::MatrixXd covariances(const Table& a, const Table& b) const;
-  /// Calls use(first place, count of places, their covariances with the table) for blocks of places.
+  /// Calls use(index of the first place, number of places, their covariances with the table) for blocks of places.
   template <class Use>
   void for_blocks(const Places& places, const Table& table, const Use& use) const;
 
  private:
-  /// Writes into `out`, whose columns follow each other; `apart` has room for a row a pair, of which the second number
-  /// is 0.
+  /// Writes the covariances to `out`, whose columns must be contiguous. `apart` is scratch space with one row per pair;
+  /// its second column must be 0.
   void covariances(const Table& a, const Table& b, Points& apart, MatrixOut out) const;
 
   std::shared_ptr<const Kernel> kernel_;
@@ -75,7 +75,7 @@ void ResidualKernel::for_blocks(const Places& places, const Table& table, const 
   Points apart = Points::Zero(n * loops::kBlock, 2);
   for (std::size_t first = 0; first < places.size(); first += loops::kBlock) {
     std::vector<Row> some;
-    for (std::size_t i = first; i < first + loops::kBlock; ++i)  // the last ones again, where there are no more
+    for (std::size_t i = first; i < first + loops::kBlock; ++i)  // repeats the last place if the block is not full
       some.push_back({places[std::min(i, places.size() - 1)]});
     covariances(table_of(some), table, apart, rows);
     const std::size_t count = std::min<std::size_t>(loops::kBlock, places.size() - first);

@@ -156,8 +156,8 @@ Eigen::VectorXd Solids::offsets(const Vector3d& at) const {
 
 std::vector<Primitive> Solids::undiscovered(const Assembly& one, int draws, Random& random) const {
   constexpr double kClear = 0.001;
-  // Largest cost of stance, size and wall, nats, beyond that of any primitive. Primitives that reach into the desk cost
-  // more.
+  // Largest cost of a draw beyond settings_.primitives, nats. It covers stance, size and wall of any primitive above
+  // the desk. Primitives that reach into the desk cost more.
   constexpr double kUnlikely = 6.0;
   std::vector<Primitive> out;
   for (int i = 0; i < draws && !one.parts.empty(); ++i) {

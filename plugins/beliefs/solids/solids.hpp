@@ -17,21 +17,21 @@
 namespace palpate {
 
 struct SolidsSettings {
-  int count = 24;           ///< assemblies
-  int moves = 1000;         ///< per assembly and touch; fewer after the 40th touch
+  int count = 24;           ///< number of assemblies
+  int moves = 1000;         ///< number of moves per assembly and touch; fewer after the 40th touch
   double misfit = 0.002;    ///< standard deviation of touches from the simple solids, which approximate objects, metres
   double primitives = 5.0;  ///< log likelihood that an additional primitive has to gain, nats
   double smallest = 0.002;  ///< smallest half extent, metres
   double largest = 0.15;    ///< largest half extent, metres
-  double most = std::numeric_limits<double>::infinity();  ///< largest cost of a touch, nats: it may be an outlier
+  double most = std::numeric_limits<double>::infinity();  ///< nats, largest cost of a touch, which may be an outlier
 };
 
 /// Primitives, and the distances of all touches to each of them.
 struct Assembly {
   struct Part {
     Primitive primitive;
-    std::vector<double> reach;  ///< distance from the end of each touch
-    std::vector<double> depth;  ///< penetration by the free part of each touch
+    std::vector<double> reach;  ///< distance from the end of each touch, metres
+    std::vector<double> depth;  ///< penetration by the free part of each touch, metres
     double prior = 0.0;         ///< log density
   };
   std::vector<Part> parts;
@@ -59,8 +59,9 @@ class Solids {
   void look(const std::vector<SurfaceTouch>& view);
 
   const std::vector<Assembly>& assemblies() const { return all_; }
-  /// Draws one more primitive, attached to `one`, this many times, and returns the draws that no touch contradicts:
-  /// undiscovered objects. The share of returned draws estimates how much of its prior probability remains.
+  /// Draws an additional primitive, attached to `one`, this many times. Returns the draws that no touch contradicts:
+  /// possible undiscovered objects. The share of returned draws estimates which part of the prior probability of such
+  /// objects remains.
   std::vector<Primitive> undiscovered(const Assembly& one, int draws, Random& random) const;
   /// Returns the most probable assembly.
   const Assembly& best() const;
@@ -71,9 +72,9 @@ class Solids {
  private:
   double prior_of(const Primitive& primitive) const;
   void look(Assembly::Part& part, std::size_t from) const;
-  /// Returns the log likelihood of `one` with its part `which` replaced by `primitive` (null: removed); `which` =
-  /// number of parts adds a part. Returns -infinity as soon as the value is certain to be below `least`. Leaves the
-  /// distances of the touches to the primitive in scratch_.
+  /// Returns the log likelihood of `one` with its part `which` replaced by `primitive` (null: removed). If `which` is
+  /// the number of parts, `primitive` is added. Returns -infinity as soon as the value is certain to be below `least`.
+  /// Leaves the distances of the touches to the primitive in scratch_.
   double likelihood_with(const Assembly& one, std::size_t which, const Primitive* primitive, double least);
   void resample(const std::vector<double>& weights);
   void take_in(const std::vector<SurfaceTouch>& touches);

@@ -20,8 +20,9 @@
 namespace palpate {
 namespace {
 
-/// Nats that a touch costs at most once contacts are known to err: less than a primitive that floats, so that one
-/// contact in the air makes none. Two outliers in a hundred, anywhere on the way, are about as much.
+/// Largest cost of a touch in nats, once contacts have shown errors. It is less than the cost of a floating primitive,
+/// so one contact in the air creates no primitive. Two outliers per hundred touches, anywhere on the path, cost about
+/// as much.
 constexpr double kMostCost = 6.5;
 
 constexpr std::int64_t kLines = 2000;  // drawn before each tap
@@ -44,7 +45,7 @@ LineFacts::Solid facts_of(const Primitive& primitive) {
   return out;
 }
 
-/// Radius of the tip of every tool, whoever moves it.
+/// Returns the radius of the tool's tip, metres. It is the same for all backends.
 double tip_of(const Scene& scene) { return scene.effects().tip_radius ? scene.effects().tip_radius->radius : 0.0; }
 
 }  // namespace
@@ -67,7 +68,7 @@ SolidsBelief::SolidsBelief(const SolidsOptions& options, const Context& context)
         "use fitting=fixed");
   }
   if (!options.view) return;
-  constexpr std::size_t kMost = 160;  // rays that are kept: the cost of a touch grows with them
+  constexpr std::size_t kMost = 160;  // number of kept rays; the time per touch grows with it
   const std::vector<SurfaceTouch> view =
       side_view(*options.view, context.scene, region_.centre, region_.radius, context.random("space/view"));
   touches_.look(thinned_view(view, kMost), shows_object(view));
@@ -104,7 +105,7 @@ void SolidsBelief::update() {
     taken_in_ = touches_.seen();
   }
   if (touches_.take_changes()) {
-    // A touch errs by the distance of the solids to the objects, and by the error of its report.
+    // The error of a touch consists of the distance between solids and objects, and of the error of the report.
     const double error = touches_.overtravel().spread();
     const double spread = error > Overtravel::kLeastSpread ? error : 0.0;
     solids_.read_again(first(taken_in_), math::hypot(options_.model_discrepancy, spread), kMostCost);
@@ -117,7 +118,7 @@ void SolidsBelief::update() {
 void SolidsBelief::draw_candidates(const LineFilter& filter) {
   if (drawn_for_ == taps().count) return;
   const PhaseClock::Scope infer(context_.clock, Phase::infer);
-  // A stream per tap: the lines depend on the touches alone, and a resumed run draws the same.
+  // One random stream per tap: the lines depend only on the touches, and a resumed run draws the same lines.
   Random random = context_.random("space/approaches", static_cast<std::uint64_t>(taps().count));
   const bool is_known = taps().count > 0 || touches_.seen() > 0;
   lines_ =

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The belief `solids`: closed surfaces in space, tapped from any side. Particles made of simple solids, and a residual
-// GP that corrects the best of them.
+// The belief `solids`: closed surfaces in space, tapped from any side. It consists of particles made of simple solids,
+// and of a residual GP that corrects the most probable particle.
 #pragma once
 
 #include "solids/line_sampler.hpp"
@@ -21,19 +21,20 @@
 
 namespace palpate {
 
-/// Its quantities of a line, by the most probable particle:
-/// - expected_discovery, metres: what a tap is expected to find that nobody has touched yet, were one primitive more
-///   expected a priori than is believed: the probability that there is one which no touch so far contradicts and which
-///   the line meets before all that is believed, times how far it moves the surface: the mean over lines from all sides
-///   of how much earlier they are met, of which no line counts more than 3 cm.
-/// - std_reduction, metres: by how much a tap is expected to lower the standard deviation of the believed surface, the
-///   mean over all of it; 0 for lines that meet no object, or meet it at less than 30 degrees.
+/// Quantities of a line, for the most probable particle:
+/// - expected_discovery, metres: expected change of the surface by objects that a tap along the line discovers. The
+///   prior is assumed to expect one primitive more than the particle contains. The value is the probability that such a
+///   primitive exists, that no touch so far contradicts it, and that the line meets it before the estimated surface,
+///   times the change. The change is the mean, over lines from all sides, of how much earlier they meet the surface, at
+///   most 3 cm per line.
+/// - std_reduction, metres: expected decrease of the standard deviation of the estimated surface by a tap, as the mean
+///   over the whole surface; 0 for lines that meet no object, or meet it at less than 30 degrees to its surface.
 /// - surface_std, metres: standard deviation of the surface along its normal where the line meets it; else 0.
 class SolidsBelief final : public Belief {
  public:
   using Options = SolidsOptions;
-  /// `context` must outlive it. Throws Error for a kernel that is not one of the distance alone, and for a fitting: no
-  /// hyperparameter is fitted.
+  /// `context` must outlive the object. Throws Error if the kernel depends on more than the distance, or unless
+  /// `fitting` is `fixed`: this belief fits no hyperparameters.
   SolidsBelief(const SolidsOptions& options, const Context& context);
 
   std::vector<Quantity> offers() const override;
@@ -58,7 +59,7 @@ class SolidsBelief final : public Belief {
   BeliefState state(std::optional<Eigen::Index> candidate) const override;
   void set_truth(const Scene* scene) override { errors_.set_truth(scene); }
   std::optional<BeliefErrors> errors(ErrorsFor purpose) override;
-  /// Without vertices before an object is known.
+  /// Returns a surface without vertices before an object is known.
   Surface surface(double resolution) override;
   LineFacts explain(const TapLine& line) const override;
 
@@ -74,8 +75,8 @@ class SolidsBelief final : public Belief {
   SurfaceErrors errors_;
   ReadPlan plan_;
   std::set<Stage> begun_;
-  std::size_t taken_in_ = 0;                                   ///< of the touches, by the solids
-  int updated_for_ = -1, drawn_for_ = -1, inferred_for_ = -1;  ///< taps after which that was done
+  std::size_t taken_in_ = 0;                                   ///< number of touches that solids_ contains
+  int updated_for_ = -1, drawn_for_ = -1, inferred_for_ = -1;  ///< number of taps at the last update of each kind
 };
 
 }  // namespace palpate

@@ -9,8 +9,8 @@ namespace {
 // Lines from 150 directions, 6 mm apart: some of them meet every patch of a surface that a finger can touch.
 constexpr int kDirections = 150;
 constexpr double kPitch = 0.006;
-constexpr double kSide = 0.001;  // metres: cubes that keep one point of a surface each
-// Metres. A cube is solid if its centre is, so a wall of 3 mm has about the right volume only on average.
+constexpr double kSide = 0.001;  // metres: side of the cubes that keep one point of a surface each
+// Metres. A cube is solid if its centre is in a solid, so a wall of 3 mm has about the right volume only on average.
 constexpr double kCube = 0.004;
 
 }  // namespace
@@ -77,7 +77,7 @@ Errors SurfaceErrors::compare(const Solids* solids, const ResidualGp& residual_g
   out.f_score = errors.f_score;
   if (solids != nullptr) out.coverage = coverage(points, *solids, residual_gp);
   const Cubes::Held& cubes = truth().cubes;
-  if (std::find(cubes.begin(), cubes.end(), true) == cubes.end()) return out;  // thinner than a cube
+  if (std::find(cubes.begin(), cubes.end(), true) == cubes.end()) return out;  // the objects are thinner than a cube
   out.volume_iou = solids != nullptr ? intersection_over_union(cubes_.of(solids->best(), residual_gp), cubes) : 0.0;
   return out;
 }

@@ -19,11 +19,11 @@
 namespace palpate {
 
 /// Returns the points where `lines` first meet the surface of the solids with the residual GP: at most one per cube
-/// with this side, metres, relative to the desk.
+/// with this side (metres). Heights are relative to the desk.
 Cloud surface_points(const Bundle& lines, double side, const Solids& solids, const ResidualGp& residual_gp);
 
-/// Returns the standard deviation of the surface near such points, metres. It combines the variance of the residual GP
-/// with the distances of the other particles' surfaces, clipped to 2 cm.
+/// Returns the standard deviation of the surface near each of `points`, metres. It combines the variance of the
+/// residual GP with the distances of the other particles' surfaces, clipped to 2 cm.
 Eigen::VectorXd surface_std(const Cloud& points, const Solids& solids, const ResidualGp& residual_gp);
 
 /// The true scene, and the lines and cubes for the comparison.
@@ -34,7 +34,7 @@ class SurfaceErrors {
   /// Sets the true scene in its current state; null if unknown. The scene must live until the next call.
   void set_truth(const Scene* scene);
 
-  /// Returns the errors of a surface. Null means that no surface is estimated yet, so the whole true surface is
+  /// Returns the errors of a surface. If `solids` is null, no surface is estimated yet, and the whole true surface is
   /// missing. All errors are absent if the truth is unknown, or if no line meets it.
   Errors compare(const Solids* solids, const ResidualGp& residual_gp);
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The touches so far, as currently read: how far the tool moved before it met the surface, and whether that was the
-// desk. Later contacts with the desk improve the estimate of the overtravel, and so change the readings of earlier
-// ones.
+// The touches so far, as currently interpreted: how far the tool moved before it met a surface, and whether this was
+// the surface of the desk. Later contacts with the desk improve the estimate of the overtravel. This changes the
+// readings of earlier touches.
 #pragma once
 
 #include "solids/overtravel.hpp"
@@ -18,25 +18,27 @@ namespace palpate {
 
 class TouchLog {
  public:
-  /// `desk`: its height, metres; `tip`: radius of the tool's round tip, metres. Contacts more than `most` above the
-  /// desk are never with the desk.
+  /// `desk`: height of the desk, metres; `tip`: radius of the tool's round tip, metres. Contacts more than `most` above
+  /// the desk are never with the desk.
   TouchLog(double desk, double tip, double most) : desk_(desk), overtravel_(tip, most) {}
 
-  /// Takes the rays of a camera, before the first tap. `shows_object`: whether one of all its rays ends on an object.
+  /// Takes the rays of a camera, before the first tap. `shows_object`: whether any ray of the whole view ends on an
+  /// object.
   void look(std::vector<SurfaceTouch> seen, bool shows_object);
 
-  /// Returns how a result is read now; nullopt if it teaches nothing: of a failed tap, and of one that felt nothing of
-  /// the desk, and so would have felt nothing of an object.
+  /// Returns the current reading of a result. Returns nullopt if the result contains no information: for a failed tap,
+  /// and for a tap far below the desk without a contact, because it would have missed an object, too.
   std::optional<TapReading> read(const TapRequest& request, const TapResult& result) const;
 
   /// Adds the result of a tap, and reads all contacts again.
   void add(const TapRequest& request, const TapResult& result);
 
-  /// Returns the current readings of all touches, lengths relative to the desk. The touches of the view come first.
+  /// Returns the current readings of all touches, with heights relative to the desk. The touches of the view come
+  /// first.
   const std::vector<SurfaceTouch>& touches() const { return touches_; }
   std::size_t seen() const { return seen_; }
   const TapsSoFar& taps() const { return taps_; }
-  /// Whether a camera saw an object before the first tap.
+  /// Returns whether a camera saw an object before the first tap.
   bool is_object_seen() const { return is_object_seen_; }
 
   /// Returns whether touches were read again, or their spread changed, since the last call.

@@ -38,7 +38,7 @@ namespace {
 struct Nearest {
   double distance = kNoHit;   ///< distance to the assembly
   double clear = kNoHit;      ///< lower bound of the distance to any surface
-  std::size_t primitive = 0;  ///< the primitive with this distance
+  std::size_t primitive = 0;  ///< index of the primitive with this distance
 };
 
 /// Returns a lower bound of the ratio of true distance to Primitive::distance(). For round primitives with unequal half

@@ -15,7 +15,7 @@ namespace palpate {
 
 class Cubes {
  public:
-  /// Covers the part of the ball above the desk. Lengths are relative to the desk.
+  /// Covers the part of the ball above the desk. Heights are relative to the desk.
   Cubes(const Eigen::Vector3d& centre, double radius, double side);
 
   /// One flag per cube: whether its centre lies in a solid. Cubes are ordered by columns, each from bottom to top.

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Fits hyperparameters to the taps. The objective is the marginal likelihood or the leave-one-out predictive density,
-// multiplied by priors for surfaces in an area of this size (Rasmussen and Williams 2006, chapter 5). A coarse search
-// finds a start, and quasi-Newton ascent finds the optimum from there. This is the only file that includes Ceres.
+// multiplied by priors for surfaces in an area of the scene's size (Rasmussen and Williams 2006, chapter 5). A coarse
+// search finds a start, and quasi-Newton ascent finds the optimum from there. This is the only file that includes
+// Ceres.
 #include "options.hpp"
 
 #include <palpate/fitting.hpp>
@@ -55,7 +56,7 @@ struct Memory {
 
   static Memory of(const std::vector<double>& numbers, Eigen::Index size) {
     if (static_cast<Eigen::Index>(numbers.size()) != 1 + size * size)
-      return {};  // The memory is empty, or is for another number of outputs.
+      return {};  // No earlier fit was stored, or it had another number of outputs.
     return {numbers.front(), Eigen::Map<const Eigen::MatrixXd>(numbers.data() + 1, size, size)};
   }
   void keep(std::vector<double>& numbers) const {
@@ -98,8 +99,8 @@ Eigen::VectorXd within_limits(Eigen::VectorXd x, const std::vector<HyperPrior>& 
 }
 
 /// Ascends from `start` by BFGS with a Wolfe line search (ceres::GradientProblem). Ends when all entries of the
-/// gradient in the coordinates u are at most `tolerance`, where x = start + metric u. A metric near the square root of
-/// the inverse curvature therefore saves steps. If nothing is known about the curvature, the metric is the identity.
+/// gradient in the coordinates u are at most `tolerance`, where x = start + metric * u. A metric near the square root
+/// of the inverse curvature therefore saves steps. If nothing is known about the curvature, the metric is the identity.
 AscentResult ascend(Objective& objective, const Eigen::VectorXd& start, const Eigen::MatrixXd& metric,
                     double tolerance) {
   ceres::GradientProblemSolver::Options options;
@@ -264,7 +265,7 @@ class Ceres final : public Fitting {
       out.push_back(one.unit == Unit::metre ? log_normal(side_ / 12.0, 0.4, 1e4) : log_normal(1.0, 1.0, 1e3));
     }
     // Squares of noise and signal have twice the spread of the standard deviations.
-    // an unknown mean means that there is no desk and so no step
+    // If the mean is unknown, there is no desk and therefore no step.
     const double noise = model.mean_ratio > 0.0 ? 0.05 : 0.3;
     out.push_back(log_normal(noise * noise, 0.8, 1e8));
     for (Eigen::Index i = 0; i < model.outputs(); ++i) out.push_back(log_normal(1.0, 0.6, 1e8));

@@ -23,7 +23,7 @@ Eigen::VectorXd exponentials(const double* logs, Eigen::Index count) {
   return Eigen::Map<const Eigen::VectorXd>(logs, count).unaryExpr([](double x) { return math::exp(x); });
 }
 
-/// Returns the dot product of two rows of lines.
+/// Returns the dot product of two arrays of `lines` lines, each of eight numbers.
 double product(const double* a, const double* b, Eigen::Index lines) {
   using Numbers = Eigen::Map<const Eigen::VectorXd, Eigen::AlignedMax>;
   return Numbers(a, 8 * lines).dot(Numbers(b, 8 * lines));
@@ -153,7 +153,7 @@ double Objective::profiled(const Eigen::VectorXd& kernel_logs, double log_noise,
   fill(false);
   if (!decompose(math::exp(log_noise))) return -std::numeric_limits<double>::infinity();
   solve(model_.targets.rowwise() - model_.means.transpose());
-  // The part of an output's likelihood that depends on the signal is -(square / signal^2 + n log signal^2) / 2.
+  // The part of an output's likelihood that depends on the signal is -(square / signal^2 + n * log(signal^2)) / 2.
   log_signals = (squares_ / n).unaryExpr(&math::log);
   const Eigen::Index m = model_.outputs();
   squares_.setConstant(n);
@@ -205,7 +205,8 @@ void Objective::solve(const Eigen::MatrixXd& targets) {
   for (Eigen::Index i = 0; i < targets.cols(); ++i) solve_lower(matrix_, solved_.col(i));
   squares_ = solved_.colwise().squaredNorm();
   if (!(model_.mean_ratio > 0.0)) return;
-  // The inverse of K + r^2 1 1^T is computed by the formulas of Sherman, Morrison and Woodbury.
+  // The inverse of K + r^2 * 1 * 1^T, where 1 is a vector of ones, is computed by the Sherman-Morrison-Woodbury
+  // formula.
   ones_ = Eigen::VectorXd::Zero(solved_.rows());
   ones_.head(n).setOnes();
   solve_lower(matrix_, ones_);
@@ -244,7 +245,7 @@ void Objective::likelihood_gradient(double* gradient) {
     gradient[parameters_ + 1 + i] += 0.5 * (squares_(i) - static_cast<double>(n));
     if (model_.fit_means) gradient[parameters_ + 1 + m + i] += solved_.col(i).sum();
   }
-  // dF/dK = (sum of alpha alpha^T over the outputs - m K^-1) / 2.
+  // dF/dK = (sum over the outputs of alpha * alpha^T - m * K^-1) / 2, with alpha = K^-1 * standard_.
   const auto outputs = static_cast<double>(m);
   for (Eigen::Index s = 0; s < matrix_.strips(); ++s) {
     Eigen::Map<Eigen::MatrixXd, Eigen::AlignedMax> adjoint(matrix_.at(s, 0)->numbers, 8, columns(s));

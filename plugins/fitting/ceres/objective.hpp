@@ -115,11 +115,13 @@ class Objective {
   std::vector<Line> slopes_;
   Eigen::VectorXd own_;       ///< n values: diagonal of K
   Eigen::MatrixXd standard_;  ///< n x m values: (targets - mean) / signal
-  /// L^-1 standard_ in whole strips. With an unknown mean, the mean is integrated out. After invert(), this is K^-1
+  /// L^-1 * standard_ in whole strips. With an unknown mean, the mean is integrated out. After invert(), this is K^-1 *
   /// standard_.
   Eigen::MatrixXd solved_;
-  Eigen::VectorXd squares_;  ///< m values: standard^T K^-1 standard
-  Eigen::VectorXd ones_;     ///< as solved_, for 1 / sqrt(1 / mean_ratio^2 + 1^T K^-1 1); only with an unknown constant
+  Eigen::VectorXd squares_;  ///< m values: standard^T * K^-1 * standard
+  /// Like solved_, for 1 / sqrt(1 / mean_ratio^2 + 1^T * K^-1 * 1), where 1 is a vector of ones; only with an unknown
+  /// mean.
+  Eigen::VectorXd ones_;
   double log_determinant_ = 0.0;
   double noise_ = 0.0;  ///< squared noise ratio
 };

@@ -35,7 +35,7 @@ constexpr Index kColumns = 4;
 constexpr Index kPacksOfLine = 8 / kLanes;
 constexpr Index kTogether = kPacks > kPacksOfLine ? kPacks / kPacksOfLine : 1;
 
-/// Computes out_p += or -= a_p b^T for kCount vector registers of rows. `a` and `b` have `depth` columns. `out` has
+/// Computes out_p += a_p * b^T (or -=) for kCount vector registers of rows. `a` and `b` have `depth` columns. `out` has
 /// eight columns.
 template <Index kCount, bool kPlus>
 HWY_INLINE void multiply(const double* const* a, const double* b, Index depth, double* const* out) {
@@ -64,7 +64,7 @@ HWY_INLINE void multiply(const double* const* a, const double* b, Index depth, d
   }
 }
 
-/// Adds (or subtracts) the products A_s B_j^T to the tiles (s, j) of C, for strips s in [first, last). A product is
+/// Adds (or subtracts) the products A_s * B_j^T to the tiles (s, j) of C, for strips s in [first, last). A product is
 /// over the columns [from, to) of A and B.
 template <bool kPlus>
 HWY_INLINE void update(StripMatrix& c, const StripMatrix& a, const StripMatrix& b, Index first, Index last, Index j,
@@ -106,7 +106,7 @@ HWY_INLINE bool factorise_tile(double* tile, double* reciprocals) {
   return true;
 }
 
-/// Computes X L^-T in place, where X is a tile and L is the triangle of a diagonal tile.
+/// Computes X * L^-T in place, where X is a tile and L is the triangle of a diagonal tile.
 HWY_INLINE void solve_tile(double* x, const double* lower, const double* reciprocals) {
 #pragma GCC unroll 8
   for (Index row = 0; row < 8; row += kLanes) {

@@ -31,7 +31,8 @@ class StripMatrix {
   double& operator()(Eigen::Index i, Eigen::Index j) { return at(i / 8, j)->numbers[i % 8]; }
   double operator()(Eigen::Index i, Eigen::Index j) const { return at(i / 8, j)->numbers[i % 8]; }
 
-  /// Sets column `j` from the first row of its tile to its last row. `values` has one number for each of these rows.
+  /// Sets column `j` from the first row of its diagonal tile to the last row of the matrix. `values` has one number for
+  /// each of these rows.
   void put(Eigen::Index j, const Eigen::VectorXd& values);
   /// Returns the full matrix from the entries on and below the diagonal.
   Eigen::MatrixXd mirrored() const;
@@ -46,21 +47,21 @@ class StripMatrix {
   std::vector<Line> lines_;
 };
 
-/// Replaces K by L with L L^T = K, on the diagonal and below it. In diagonal tiles, the entries above the diagonal are
-/// undefined. Rows beyond n become rows of the identity. `reciprocals` receives the reciprocals of the diagonal. If K
-/// is not positive definite or not finite, returns false and leaves the content undefined.
+/// Replaces K by L with L * L^T = K, on the diagonal and below it. In diagonal tiles, the entries above the diagonal
+/// are undefined. Rows beyond n become rows of the identity. `reciprocals` receives the reciprocals of the diagonal. If
+/// K is not positive definite or not finite, returns false and leaves the content undefined.
 bool factorise(StripMatrix& matrix, std::vector<double>& reciprocals);
 
-/// Computes L^-1 b in place, for n numbers.
+/// Computes L^-1 * b in place, for n numbers.
 void solve_lower(const StripMatrix& factor, VectorOut b);
 
 /// Computes L^-T on the diagonal and above it, from the result of factorise(). `out` must have the size of `factor`.
 void invert_transposed(const StripMatrix& factor, const std::vector<double>& reciprocals, StripMatrix& out);
 
-/// Computes U b in place, where U is an upper triangular matrix.
+/// Computes U * b in place, where U is an upper triangular matrix.
 void multiply_upper(const StripMatrix& upper, VectorOut b);
 
-/// Computes U U^T on the diagonal, below it, and in all diagonal tiles. For U = L^-T the result is K^-1.
+/// Computes U * U^T on the diagonal, below it, and in all diagonal tiles. For U = L^-T the result is K^-1.
 void square_upper(const StripMatrix& upper, StripMatrix& out);
 
 }  // namespace palpate::fitting

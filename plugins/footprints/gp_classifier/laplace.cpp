@@ -11,8 +11,8 @@ namespace {
 constexpr double kRootHalf = 0.70710678118654752440;
 constexpr double kLogRootTwoPi = 0.91893853320467274178;
 
-/// Returns -z Phi(z) / phi(z) - 1 for z <= -10, by the asymptotic series of Mills' ratio without its first term. There
-/// the terms decrease below 1e-9 of the first before they grow.
+/// Returns -z * Phi(z) / phi(z) - 1 for z <= -10. The value is the asymptotic series of Mills' ratio without its first
+/// term. For these z, the terms decrease below 1e-9 of the first term before they grow.
 double rest_of_mills(double z) {
   const double inverse = 1.0 / (z * z);
   double term = 1.0;
@@ -41,7 +41,7 @@ Probit probit(double z) {
     const double ratio = -(1.0 + rest) / z;
     out.log = log_density + math::log(ratio);
     out.slope = 1.0 / ratio;
-    // Computed without the cancellation of slope + z: 1 / ratio + z = (1 + z ratio) / ratio.
+    // Computed without the cancellation of slope + z: 1 / ratio + z = (1 + z * ratio) / ratio.
     out.weight = -out.slope * rest / ratio;
   }
   return out;
@@ -57,8 +57,8 @@ Laplace::Laplace(const Kernel& kernel, const LaplaceSettings& settings, const Po
   find_mode(covariance);
 }
 
-/// Returns Psi of algorithm 3.1: the log likelihood minus (f - mean)^T K^-1 (f - mean) / 2, with dual = K^-1 (f -
-/// mean).
+/// Returns Psi of algorithm 3.1 (Rasmussen and Williams 2006): the log likelihood minus (f - mean)^T * K^-1 * (f -
+/// mean) / 2. `dual` is K^-1 * (f - mean).
 double Laplace::objective(const Eigen::VectorXd& latent, const Eigen::VectorXd& dual) const {
   double sum = -0.5 * dual.dot((latent.array() - settings_.mean).matrix());
   for (Eigen::Index i = 0; i < latent.size(); ++i) sum += probit(sign_(i) * latent(i)).log;
@@ -86,7 +86,8 @@ void Laplace::find_mode(const Eigen::MatrixXd& covariance) {
     inner_matrix.diagonal().array() += 1.0;
     factor_.factorise(inner_matrix);
     if (steps == kMostSteps) break;
-    // Newton step: K^-1 (f_new - mean) = b - W^1/2 B^-1 W^1/2 K b, with b = W (f - mean) + gradient.
+    // Newton step: K^-1 * (f_new - mean) = b - W^1/2 * B^-1 * W^1/2 * K * b, with b = W * (f - mean) + gradient and B =
+    // I + W^1/2 * K * W^1/2.
     const Eigen::VectorXd b = weight.cwiseProduct((latent.array() - settings_.mean).matrix()) + gradient_;
     Eigen::VectorXd inner = root_weight_.cwiseProduct(covariance * b);
     factor_.solve(inner);

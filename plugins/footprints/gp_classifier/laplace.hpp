@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Gaussian process classification with a probit likelihood by Laplace's approximation (Rasmussen and Williams 2006,
-// sections 3.4 and 3.9). The model is a latent function f ~ GP(mean, signal^2 k) with p(on | x) = Phi(f(x)).
+// sections 3.4 and 3.9). The model is a latent function f ~ GP(mean, signal^2 * k) with p(on | x) = Phi(f(x)).
 #pragma once
 
 #include "regular/regular_factor.hpp"
@@ -15,8 +15,8 @@
 
 namespace palpate::footprints {
 
-/// log Phi(z) and its derivatives: `slope` = phi(z) / Phi(z), and -`weight` = -slope (z + slope). Finite for all finite
-/// z; `weight` is in (0, 1).
+/// log Phi(z) and its derivatives: `slope` = phi(z) / Phi(z), and the second derivative -`weight` = -slope * (z +
+/// slope). All are finite for all finite z; `weight` is in (0, 1).
 struct Probit {
   double log = 0.0;
   double slope = 0.0;
@@ -49,7 +49,7 @@ struct LaplaceSettings {
 };
 
 /// Posterior given n labels. Damped Newton steps find the mode, which is unique because the log posterior is concave.
-/// Contradictory labels at one position do no harm, because only I + W^1/2 K W^1/2 is factorised.
+/// Contradictory labels at one position cause no numerical problems, because only I + W^1/2 * K * W^1/2 is factorised.
 class Laplace {
  public:
   /// `kernel` must outlive the object. `points` is n x 2, `on` has n entries.
@@ -61,7 +61,7 @@ class Laplace {
   /// Returns the approximate log p(labels), natural logarithm.
   double log_evidence() const { return log_evidence_; }
   /// Returns the corrections of rounding errors in the factorisation at the mode, without unit. Only a kernel that is
-  /// not positive definite needs any, because all eigenvalues of the factorised matrix are at least 1.
+  /// not positive definite needs corrections, because all eigenvalues of the factorised matrix are at least 1.
   const FactorReport& report() const { return factor_.report(); }
 
  private:
@@ -74,7 +74,7 @@ class Laplace {
   Eigen::VectorXd sign_;         ///< +1 on an object, -1 on the desk
   Eigen::VectorXd gradient_;     ///< gradient of the log likelihood at the mode
   Eigen::VectorXd root_weight_;  ///< W^1/2 at the mode
-  RegularFactor factor_;         ///< factor of I + W^1/2 K W^1/2
+  RegularFactor factor_;         ///< factor of I + W^1/2 * K * W^1/2
   double log_evidence_ = 0.0;
 };
 

@@ -34,7 +34,7 @@ class Taps {
   /// Returns the number of taps with the label of an object.
   int objects() const { return objects_; }
 
-  /// Sets a row of length() entries to the step of the depth of each tap in a primitive.
+  /// Sets `row` (length() entries) to the depth of each tap in a primitive, in steps.
   void steps(const Primitive& primitive, const LabelModel& labels, Step* row) const;
 
  private:
@@ -47,15 +47,15 @@ class Taps {
 /// Pointers to rows of steps, in the order of the primitives of a hypothesis.
 using RowList = ShortList<const LabelModel::Step*>;
 
-/// Rows of steps per primitive of a hypothesis. No other data about taps are kept per particle.
+/// One row of steps per primitive of a hypothesis. Particles store no other data about taps.
 class TapRows {
  public:
   using Step = LabelModel::Step;
 
   int length() const { return length_; }
-  /// Lengthens all rows; new entries are outside.
+  /// Lengthens all rows; new entries are kOutside.
   void grow(int length);
-  /// Copies rows. Rows of this object must keep their order or replace an earlier row.
+  /// Copies rows. A row of this object may only stay or move to a lower index.
   void set(const RowList& rows);
   Step* row(int primitive) { return steps_.data() + static_cast<std::ptrdiff_t>(primitive) * length_; }
   const Step* row(int primitive) const { return steps_.data() + static_cast<std::ptrdiff_t>(primitive) * length_; }
@@ -135,8 +135,8 @@ struct FormTable {
   void set(const std::vector<const Form*>& forms);
   std::vector<float> x, y, a, b, cosine, sine, ellipse;  ///< `ellipse`: 1 for an ellipse, 0 for a box
 };
-/// Adds 1 to `count` for each form of the table that overlaps a primitive of the hypothesis, as overlap() up to
-/// rounding. `count` has one entry per form.
+/// Adds 1 to `count` for each form of the table that overlaps a primitive of the hypothesis, by the rule of overlap(),
+/// up to rounding. `count` has one entry per form.
 void count_overlaps(const Hypothesis& hypothesis, const FormTable& table, float* count);
 
 }  // namespace palpate::footprints

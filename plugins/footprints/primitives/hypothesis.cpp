@@ -6,11 +6,12 @@
 namespace palpate::footprints {
 namespace {
 
-// Range of a fitted hole's fraction of the form's axes.
+// Range of the axes of a fitted hole, as fractions of the form's axes.
 constexpr double kLeastShare = 0.1;
 constexpr double kMostShare = 0.9;
 
-/// Half axes of nearly round ellipses. The short one starts at `shortest`; `range` is its range of logarithms.
+/// Half axes of nearly round ellipses. The short half axis is at least `shortest`; `range` is the length of the range
+/// of its logarithm.
 class NearlyRound {
  public:
   NearlyRound(double shortest, double range)
@@ -102,7 +103,8 @@ void Primitive::fit_hole() {
     hole.b *= along;
     return;
   }
-  // The hole's centre is the corner, so the form has no remainder beyond the hole, even for noisy taps.
+  // The hole is centred on the corner and extends beyond the form. So nothing of the form remains outside the hole,
+  // even for noisy taps.
   const double u = side_a * form.a;
   const double v = side_b * form.b;
   hole.x += form.cosine * u - form.sine * v;
@@ -267,7 +269,7 @@ double Prior::fitted_hole(const Primitive& primitive) const {
   const bool box = primitive.form.family == Form::Family::box;
   if (!possible(primitive.along)) return 0.0;
   if (primitive.fit == Primitive::Fit::concentric) return (box ? 0.5 : 1.0) * kUniform;
-  // Probability of one of four corners.
+  // The factor 0.25 is the probability of one of four corners.
   return box && possible(primitive.across) ? 0.5 * 0.25 * kUniform * kUniform : 0.0;
 }
 

@@ -135,7 +135,7 @@ struct Push {
   int before = 0;                         ///< number of taps before the push; 0: no push
   double origin_x = 0.0, origin_y = 0.0;  ///< metres
   double dx = 0.0, dy = 0.0;              ///< metres
-  double cosine = 1.0, sine = 0.0;        ///< cosine of the rotation from x to y
+  double cosine = 1.0, sine = 0.0;        ///< cosine and sine of the rotation from x to y
 
   explicit operator bool() const { return before > 0; }
   double angle() const { return math::atan2(sine, cosine); }
@@ -162,10 +162,10 @@ struct Hypothesis {
 /// Prior of hypotheses: a Poisson process of `expected` primitives, truncated at `most`. Each primitive is inside the
 /// area, at a uniform position. Angle and logarithms of the half axes are uniform within the bounds. `most_slender`
 /// limits forms, not free holes. Priors of push and noise are in sampler.hpp.
-/// Most ellipses are nearly round: the logarithm of the short half axis is uniform, and the long one is up to 6 %
-/// longer. Only primitives twice as long as `min_width` have holes. A free hole has its centre on the primitive, and
-/// half axes from half of `min_width` to the long half axis of the primitive. A fitted hole takes a tenth to nine
-/// tenths of the axes, in the middle or, with equal probability for a box, at a corner.
+/// Most ellipses are nearly round: the logarithm of the short half axis is uniform, and the long half axis is up to 6 %
+/// longer. Only primitives that are at least twice as long as `min_width` have holes. A free hole has its centre on the
+/// primitive, and half axes from half of `min_width` to the long half axis of the primitive. A fitted hole takes a
+/// tenth to nine tenths of the axes, in the middle or, with equal probability for a box, at a corner.
 class Prior {
  public:
   struct Settings {
@@ -178,7 +178,7 @@ class Prior {
     double round = 0.8;                      ///< probability that an ellipse is nearly round, in [0, 1)
     double hole_probability = 0.25;          ///< in [0, 1)
     double fitted = 0.8;                     ///< probability that a hole is fitted, in [0, 1)
-    int most = ShortList<Primitive>::kMost;  ///< 1 to kMost
+    int most = ShortList<Primitive>::kMost;  ///< largest number of primitives, 1 to kMost
   };
 
   /// Throws Error if the area is too small for most draws of a primitive.
@@ -188,7 +188,7 @@ class Prior {
 
   /// Draws a hypothesis without push and noise.
   Hypothesis draw(Random& random) const;
-  /// Return a random primitive, and one without a hole.
+  /// Return a random primitive with or without a hole, and a random primitive without a hole.
   Primitive draw_primitive(Random& random) const;
   Primitive draw_whole(Random& random) const;
   /// Adds a random hole to the primitive; its density is not updated.
@@ -198,8 +198,9 @@ class Prior {
   double whole_probability(const Form& form) const {
     return form.a >= settings_.min_width ? 1.0 - settings_.hole_probability : 1.0;
   }
-  /// Returns the density of a primitive in centre, angle, fractions and logarithms of half axes, up to a common factor;
-  /// 0 if it is impossible.
+  /// Returns the density of a primitive with respect to its centre, its angle, the logarithms of all half axes, and the
+  /// fractions of a fitted hole. The density has a factor that is the same for all primitives. It is 0 if the primitive
+  /// is impossible.
   double density(const Primitive& primitive) const;
   /// Returns the density of a form's centre per square metre; 0 if the form does not fit there.
   double centre_density(const Form& form) const;
@@ -208,7 +209,8 @@ class Prior {
   /// Draws family, half axes up to `longest`, and direction; the centre is the origin.
   Form draw_form(double longest, Random& random) const;
   double family(const Form& form) const;
-  /// Returns the density of ordered logarithms of half axes over this range, and of the direction.
+  /// Returns the joint density of the ordered logarithms of the half axes, over a range of this length, and of the
+  /// direction.
   double axes(const Form& form, double range) const;
   double fitted_hole(const Primitive& primitive) const;
   double hole_centre_density(const Form& form, const Form& hole) const;

@@ -63,7 +63,8 @@ class Choice {
   }
 
   int index() const { return index_; }
-  /// Returns the probability of this choice after the chosen primitive becomes `changed`, divided by the present one.
+  /// Returns the probability of this choice after the chosen primitive becomes `changed`, divided by its present
+  /// probability.
   double ratio(const Primitive& changed) const {
     if (!(sum_ > 0.0)) return 1.0;
     const double after = weight(changed);
@@ -160,8 +161,8 @@ void change_hole(Proposal& out, const Hypothesis& from, bool adds, const Prior& 
   out.ratio = adds ? odds : 1.0 / odds;
 }
 
-// Rotation by 2 atan(tangent), and stretching by a factor. The reverse of each has the opposite sign and the same
-// probability.
+// Rotation by 2 * atan(tangent), and the factor of a stretch. The reverse move has the negative `tangent` or `step`,
+// with the same probability.
 void turn(Form& form, double tangent) {
   const double square = tangent * tangent;
   form.turn_by((1.0 - square) / (1.0 + square), 2.0 * tangent / (1.0 + square));
@@ -175,8 +176,8 @@ void stretch(Form& form, const Steps& steps) {
   form.b *= form.family == Form::Family::ellipse && steps.coin ? one : stretched(kStretch * steps.other);
 }
 
-/// Moves one side; the opposite side stays. Returns the ratio of densities: a symmetric step of a half axis is
-/// asymmetric in its logarithm.
+/// Moves one side; the opposite side stays. Returns the ratio of proposal densities, because a symmetric step of a half
+/// axis is asymmetric in its logarithm.
 double move_side(Form& form, const Steps& steps) {
   const bool along = steps.coin;
   double& half = along ? form.a : form.b;
@@ -338,7 +339,8 @@ void propose_push(Proposal& out, const Hypothesis& from, const Prior& prior, int
   out.kind = Proposal::Kind::push;
   const bool moves_along = random.uniform() < 0.5;
   if (random.uniform() < 0.5) {
-    // A push often shows some taps later. With probability 1/2 it is proposed among the latest taps.
+    // The effect of a push often appears some taps later. With probability 1/2, the push is therefore proposed among
+    // the latest taps.
     constexpr int kLatest = 6;
     const int latest = std::min(kLatest, taps - 1);
     const auto ratio = [&](int before) {

@@ -15,18 +15,19 @@ double normal(Random& random);
 
 /// A proposed change of a hypothesis.
 struct Proposal {
-  /// The kinds change_form, replace, flip_noise and push are their own reverses; the others are pairs of reverses.
+  /// Each of change_form, replace, flip_noise and push is its own reverse. The reverse of add is remove, and that of
+  /// make_hole is fill_hole.
   enum class Kind { change_form, replace, add, remove, make_hole, fill_hole, flip_noise, push };
   Kind kind = Kind::change_form;
-  /// Ratio of Metropolis and Hastings without the likelihood: (prior density times density of the reverse proposal)
-  /// after the change, divided by the same product before the change. 0 if the move is impossible.
+  /// Metropolis-Hastings ratio without the likelihood: (prior density after the change) * (density of the reverse
+  /// proposal) / ((prior density before the change) * (density of the proposal)). 0 if the move is impossible.
   double ratio = 0.0;
   ShortList<int> removed;      ///< indices in the hypothesis
   ShortList<Primitive> added;  ///< the first elements replace the removed ones
   Push push;
   bool noisy = false;
 
-  /// Resets to no change of `from`, with ratio 0.
+  /// Resets the proposal to no change of `from`, with ratio 0.
   void begin(const Hypothesis& from) {
     ratio = 0.0;
     removed.clear();
@@ -69,7 +70,8 @@ void propose_noise(Proposal& out, const Hypothesis& from);
 ///
 /// The weight omits (1 - rate)^(taps - 1), which all hypotheses share up to one factor 1 - rate. The prior of a
 /// primitive with an object tap omits exp(-r), where r is the expected number of such primitives. It also omits the
-/// part of that factor that the desk taps contribute. Both depend on the push; no effect was measured in 1200 runs.
+/// part of that factor that the desk taps contribute. Both omitted factors depend on the push; no effect was measured
+/// in 1200 runs.
 void propose_push(Proposal& out, const Hypothesis& from, const Prior& prior, int taps, double rate, Random& random);
 
 }  // namespace palpate::footprints

@@ -149,9 +149,10 @@ Sampler::Sampler(const Prior& prior, const SamplerSettings& settings, Random ran
 }
 
 // A tap discovers at most one new primitive, which is assumed to contain the tap fully. So an undiscovered primitive
-// whose noisy rim is near the tap is not discovered. Its heights do not count, and a particle with the maximum number
-// of primitives discovers nothing. Later moves correct these approximations. With 4 mm of noise, the error of
-// probabilities was below 0.01. With heights in the weights, the accuracy of the default did not change.
+// whose noisy rim is near the tap is not discovered. The heights of a discovered primitive do not count, and a particle
+// with the maximum number of primitives discovers nothing. Later moves correct these approximations. With 4 mm of
+// noise, the error of probabilities was below 0.01. With heights in the weights, the accuracy of the default did not
+// change.
 double Sampler::add(const Touch& touch) {
   likelihood_.add(touch);
   const Taps& taps = likelihood_.taps();
@@ -229,8 +230,8 @@ void Sampler::resample(const std::vector<double>& weights, double sum, std::size
     while (cumulative < wanted && from + 1 < weights.size()) cumulative += weights[++from];
     ++copies[from];
   }
-  // Indices of particles without copies, separately for exact and noisy ones, in descending order. There are as many as
-  // further copies and particles that must move to the front.
+  // Indices of particles without copies, separately for exact and noisy ones, in descending order. Their number is that
+  // of the additional copies and of the particles that must move to the front.
   std::array<std::vector<std::size_t>, 2> free;
   for (std::size_t i = count; i-- > 0;) {
     if (copies[i] == 0) free[particles_[i].hypothesis.noisy ? 1 : 0].push_back(i);
@@ -259,8 +260,8 @@ void Sampler::resample(const std::vector<double>& weights, double sum, std::size
   particles_.resize(count);
 }
 
-/// Returns the number of moves per particle after a tap that left this effective fraction of particles. It depends on
-/// the moved states, which biases the chain by O(1 / particles).
+/// Returns the number of moves per particle after a tap that left this effective fraction of particles. The number
+/// depends on the states that are moved, which biases the chain by O(1 / particles).
 int Sampler::count_moves(double effective_share) const {
   const Taps& taps = likelihood_.taps();
   const Target latest = taps[taps.size() - 1];
@@ -299,8 +300,9 @@ void MarkovChain::move(Particle& particle, int times, Likelihood& likelihood, Ra
   }
 }
 
-/// Accepts or rejects the proposal by Metropolis and Hastings in two steps: labels first, then heights, which take
-/// longer (delayed acceptance: Christen and Fox 2005). `taps`: positions after the push of the proposal.
+/// Accepts or rejects the proposal by the Metropolis-Hastings rule in two steps: first with the labels, then with the
+/// heights, which take longer (delayed acceptance: Christen and Fox 2005). `taps`: positions after the push of the
+/// proposal.
 bool MarkovChain::accept(Particle& particle, const Taps& taps, Likelihood& likelihood, Random& random) {
   const Proposal& proposal = proposal_;
   // The density of a long push may underflow, so the ratio is limited.

@@ -3,11 +3,12 @@
 // by their likelihood and moved by a Markov chain (resample-move: Gilks and Berzuini 2001). The target density of the
 // chain is
 //
-//     rate^[push] f(push) expected^n density(1) ... density(n) P(labels | union, push, noisy) P(heights | primitives)
+//     rate^[push] * f(push) * expected^n * density(1) * ... * density(n)
+//         * P(labels | union, push, noisy) * P(heights | primitives)
 //
 // for n unordered primitives (hypothesis.hpp) with at least one object tap each, a push (proposals.cpp), and noisy
-// positions with prior probability 1/2. Undiscovered primitives (undiscovered.hpp) are independent of these, up to
-// approximations that are documented with the code.
+// positions with prior probability 1/2. [push] is 1 with a push and 0 without one. Undiscovered primitives
+// (undiscovered.hpp) are independent of these primitives, up to approximations that are documented with the code.
 #pragma once
 
 #include "proposals.hpp"
@@ -51,16 +52,16 @@ struct Particle {
   RowList list_rows() const;
 };
 
-/// Copies the primitives about which the latest tap is informative from `from` to `to`, where they replace such
-/// primitives. These are primitives near the tap, and primitives that are close to them or share an object tap with
-/// them, in either hypothesis. Other primitives stay, because a tap of one object carries no information about another
-/// (local particle filters: Rebeschini and van Handel 2015). Without this rule few distinct hypotheses of an object
-/// would survive while another object is tapped. The likelihood of `to` is not updated. Returns false, without a
-/// change, in three cases: no primitive would stay or more than `most` would result, a hypothesis has a push, or only
-/// one hypothesis has noisy positions. `taps` are the positions as made.
+/// Copies those primitives of `from` to `to` about which the latest tap is informative. They replace the corresponding
+/// primitives of `to`. The tap is informative about primitives near it, and about primitives that are close to them or
+/// share an object tap with them, in either hypothesis. Other primitives stay, because a tap of one object carries no
+/// information about another (local particle filters: Rebeschini and van Handel 2015). Without this rule few distinct
+/// hypotheses of an object would survive while another object is tapped. The likelihood of `to` is not updated. Returns
+/// false, without a change, in three cases: no primitive would stay or more than `most` would result, a hypothesis has
+/// a push, or only one hypothesis has noisy positions. `taps` are the positions as made.
 ///
-/// An approximation: the resampling weights are not corrected for the primitives that stay; the moves that follow
-/// correct the particles. A calibration with the default moves showed no error at 0.003.
+/// This is an approximation: the resampling weights are not corrected for the primitives that stay; the moves that
+/// follow correct the particles. A calibration with the default moves showed no error at a resolution of 0.003.
 bool resample_partially(const Particle& from, const Taps& taps, int most, Particle& to);
 
 /// Taps and their likelihood under a hypothesis.
@@ -88,7 +89,7 @@ class Likelihood {
   std::array<LabelModel, 2> labels_;  ///< exact and noisy
   HeightModel heights_;
   Taps taps_;
-  std::vector<LabelModel::Step> steps_;  ///< scratch memory, as holders_
+  std::vector<LabelModel::Step> steps_;  ///< scratch memory, like holders_
   std::vector<std::uint16_t> holders_;
 };
 
@@ -111,7 +112,7 @@ class MarkovChain {
   Prior prior_;
   SamplerSettings settings_;
   long tried_ = 0, accepted_ = 0;  ///< moves
-  Proposal proposal_;              ///< reused memory, as the members below
+  Proposal proposal_;              ///< reused memory, like the members below
   Taps seen_, pushed_;             ///< taps after the push of the particle, and of the proposal
   TapRows added_;
 };
@@ -136,8 +137,8 @@ class Sampler {
   /// Sets `out` to the probability that each tap's label is an error. A label that noise of the position explains does
   /// not count as an error.
   void label_errors(VectorOut out) const;
-  /// Moves the positions of taps with the objects if more than half of the particles have a later push. `positions`
-  /// contains the original positions.
+  /// Moves the positions of taps together with the objects: of each tap after which more than half of the particles
+  /// have a push. `positions` contains the original positions.
   void current_positions(Points& positions) const;
   /// Returns the probability that an object of at least `length` metres exists apart from all known primitives.
   double undiscovered_probability(double length) const;
@@ -165,7 +166,7 @@ class Sampler {
   int count_moves(double effective_share) const;
   /// Computes spans_ for these positions.
   void prepare(const PointsView& positions);
-  /// Calls visit(tap, labels, step, on) for each tap with a loss in each particle.
+  /// Calls visit(tap, labels, step, on) for each tap in each particle with a loss above 0.
   template <class Visit>
   void for_each_label(const Visit& visit) const;
 

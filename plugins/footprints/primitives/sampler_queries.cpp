@@ -110,7 +110,7 @@ void Sampler::sample(const PointsView& positions, int count, HypothesisSample& o
   out.count = count;
   out.holds.setZero(count / 64, positions.rows());
   for (int k = 0; k < count; ++k) {
-    // Bits mark the ends of spans first; a prefix XOR fills the spans.
+    // First, bits mark the ends of spans. A prefix XOR then fills the spans.
     const std::uint64_t bit = std::uint64_t{1} << (k % 64);
     for (const Grid::Span& span : spans_[static_cast<std::size_t>(drawn(k))]) {
       out.holds(k / 64, span.begin) ^= bit;

@@ -25,7 +25,7 @@ constexpr double kContinued = 0.3;
 // Number of nearest earlier taps that are searched; nearly always, one of them is in the same primitive.
 constexpr std::size_t kNeighbours = 8;
 
-/// Returns the logarithm of a height's density given an earlier one, relative to the uniform density.
+/// Returns the logarithm of a height's density given an earlier height, relative to the uniform density.
 double gain(const Touch& earlier, const Touch& later, double growth) {
   const double distance = math::hypot(later.place.x - earlier.place.x, later.place.y - earlier.place.y);
   const double scale = math::hypot(kHeightNoise, growth * distance);
@@ -41,8 +41,8 @@ LogUnits to_units(double logarithm) { return std::llround(logarithm * 0x1p20); }
 LabelModel::LabelModel(double label_error, double false_contact, double noise)
     : contradictions_{to_units(0.5 * math::log((1.0 - false_contact) / label_error)),
                       to_units(0.5 * math::log((1.0 - label_error) / false_contact))} {
-  constexpr double kDeviations = 3.5;  // beyond, noise moves about one tap in 2000 across the rim
-  // Without noise the steps are too short for any tap to be within one of a rim.
+  constexpr double kDeviations = 3.5;  // farther away, noise moves less than one tap in 4000 across the rim
+  // Without noise, the steps are so short that no tap is within one step of a rim.
   reach_ = kDeviations * std::max(noise, 1e-12);
   steps_per_metre_ = 0.5 * kSteps / reach_;
   for (int step = 0; step < kSteps + 2; ++step) {
@@ -94,7 +94,7 @@ void HeightModel::add(const Touch& touch) {
 }
 
 LogUnits HeightModel::evidence(const std::vector<std::uint16_t>& holders, int primitives) const {
-  constexpr std::size_t kMost = 16;  // bits of a holder
+  constexpr std::size_t kMost = 16;  // number of bits per entry of `holders`
   std::array<LogUnits, kMost> level{};
   std::array<LogUnits, kMost> slope{};
   LogUnits out = 0;

@@ -79,7 +79,7 @@ class HeightModel {
   LogUnits evidence(const std::vector<std::uint16_t>& holders, int primitives) const;
 
  private:
-  /// Logarithms of a height's probability given an earlier one, on a level and on a sloped top.
+  /// Logarithms of a height's probability given an earlier height, on a level and on a sloped top.
   struct Neighbour {
     std::size_t tap;
     LogUnits level, slope;

@@ -46,7 +46,7 @@ void Undiscovered::for_each_near(Draws& draws, const Target& position, double re
   for (std::size_t i = 0; i < near.size(); ++i) {
     const float dx = forms_.x[i] - x;
     const float dy = forms_.y[i] - y;
-    // 2 (radius^2 + reach^2) is at least (radius + reach)^2.
+    // 2 * (radius^2 + reach^2) is at least (radius + reach)^2.
     near[i] = dx * dx + dy * dy <= 2.0F * (forms_.a[i] * forms_.a[i] + forms_.b[i] * forms_.b[i] + margin);
   }
   for (auto one = near.begin(); (one = std::find(one, near.end(), 1)) != near.end(); ++one)
@@ -135,7 +135,7 @@ std::vector<Undiscovered::Member> Undiscovered::draw(int count, Random& random) 
   cumulative.reserve(draws_.size());
   std::uint64_t sum = 0;
   for (const Draw& one : draws_) cumulative.push_back(sum += one.weight);
-  // The number of members is Poisson: events of rate 1 within the time `rate`.
+  // The number of members has a Poisson distribution: it is the number of events of rate 1 within the time `rate`.
   const double rate = unit_ * static_cast<double>(sum);
   const auto pause = [&] { return -math::log(1.0 - random.uniform()); };
   std::vector<Member> out;

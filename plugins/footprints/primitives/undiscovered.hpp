@@ -59,8 +59,9 @@ class Undiscovered {
   /// holes, that cover the position and are apart from known primitives. The sum uses every second draw.
   Eigen::VectorXd expected_extent() const;
 
-  /// Compares the draws with at least one hypothesis, until the next tap. A draw is apart from a hypothesis if it
-  /// overlaps none of its primitives. Eight hypotheses give the probability in steps of 1/8.
+  /// Compares the draws with the hypotheses `known`, at least one. The result is valid until the next tap. A draw is
+  /// apart from a hypothesis if it overlaps none of its primitives. Eight hypotheses give the probability in steps of
+  /// 1/8.
   void compare(const std::vector<const Hypothesis*>& known);
   /// Returns the expected number of primitives of at least `length` metres that are apart.
   double expected_apart(double length) const;

@@ -43,22 +43,22 @@ using Block = Eigen::Array<double, Eigen::Dynamic, 1, 0, kBlock, 1>;
 /// Replaces each number x by e^x.
 inline void take_exponentials(Numbers numbers) { math::exp(numbers.data(), numbers.size(), numbers.data()); }
 
-/// A kernel of unit variance, k(a, b) = f(z) with z = kScale (((a_x - b_x) / l_x)^2 + ((a_y - b_y) / l_y)^2).
+/// A kernel of unit variance, k(a, b) = f(z) with z = kScale * (((a_x - b_x) / l_x)^2 + ((a_y - b_y) / l_y)^2).
 ///
 /// `Shape` defines f and its parameters other than the length scales. Below, r^2 is z / kScale:
 ///     using Options;                             derived from StationaryOptions
 ///     static constexpr double kScale;
 ///     static constexpr double kFarthest;         upper limit of squared scaled distances, to avoid infinity and NaN
 ///     explicit Shape(const Options&);
-///     void values(Numbers z) const;              z -> f, in place; r^2 up to 2 kFarthest
+///     void values(Numbers z) const;              z -> f, in place; r^2 up to 2 * kFarthest
 ///     void slopes(Numbers z, Numbers slope) const;            z -> f, in place; slope = -2 df / d(r^2)
 ///     std::vector<KernelParameter> parameters() const;
 ///     void set_parameters(values);
 ///     static constexpr bool kOwn;                whether there is one parameter other than length scales; if so:
 ///     void own_slopes(z, k, Numbers slope) const;             dk / d log parameter
-///     static constexpr bool kSeparable;          f(a + b) = f(a) f(b)
+///     static constexpr bool kSeparable;          f(a + b) = f(a) * f(b)
 ///     static constexpr bool kSlopes;             whether f has two derivatives by r everywhere; if so:
-///     void bends(Numbers z) const;               z -> -d^2 f / dr^2, in place; at r = 0 its limit, where slopes() must
+///     void bends(Numbers z) const;               z -> -d^2 f / dr^2, in place; its limit at r = 0, where slopes() must
 ///                                                be finite, too
 template <class Shape>
 class Stationary final : public Kernel {

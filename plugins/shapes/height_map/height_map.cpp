@@ -204,7 +204,7 @@ class HeightMap final : public Shape {
   }
 
   double spacing_;
-  Grid heights_;  ///< metres; each row is along x, and the first row is at the near side
+  Grid heights_;  ///< metres; each row is along x, and the first row is at the smallest y
   double highest_ = 0.0, half_length_ = 0.0, half_width_ = 0.0;
 };
 

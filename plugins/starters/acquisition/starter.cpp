@@ -1,4 +1,4 @@
-// Score of each candidate: uncertainty u of the height times object probability p to the power `trust`, u p^trust.
+// Score of each candidate: uncertainty u of the height times object probability p to the power `trust`, u * p^trust.
 #include <palpate/acquisition.hpp>
 #include <palpate/plugin.hpp>
 

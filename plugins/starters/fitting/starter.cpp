@@ -1,5 +1,5 @@
-// Fit of the hyperparameters: mean and standard deviation of the targets become those of the prior. Kernel and ratio of
-// noise to signal are unchanged.
+// Fit of the hyperparameters: mean and standard deviation of the targets become those of the prior. The kernel and the
+// ratio of noise to signal remain unchanged.
 #include <palpate/fitting.hpp>
 #include <palpate/math.hpp>
 #include <palpate/plugin.hpp>

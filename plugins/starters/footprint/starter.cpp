@@ -1,5 +1,5 @@
-// Probability of an object: mean of the labels of contacts, weighted by their proximity, and of a prior with the weight
-// of one contact at the position itself.
+// Probability of an object: weighted mean of the labels of all contacts and of a prior. The weight of a contact
+// decreases with its distance. The prior has the weight of one contact at the position itself.
 #include <palpate/footprint.hpp>
 #include <palpate/math.hpp>
 #include <palpate/plugin.hpp>

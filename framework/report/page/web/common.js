@@ -33,20 +33,20 @@ function element(tag, attributes = {}, ...children) {
   return out;
 }
 
-/// Returns an element with text of a config. The element isolates the text, so that characters for the direction of
-/// writing in it do not affect other text.
+/// Returns an element with text of a config. The element isolates the text, so that its control characters for the
+/// direction of writing do not affect other text.
 function foreign(text) {
   return element("bdi", { class: "foreign" }, String(text));
 }
 
-/// Returns text on one line, without characters for the direction of writing.
+/// Returns text on one line, without control characters for the direction of writing.
 function oneLine(text) {
   return String(text)
     .replace(/[\n\r\t]+/g, " ")
     .replace(/[\u200e\u200f\u202a-\u202e\u2066-\u2069]/g, "");
 }
 
-/// Returns text for a title, label or hover of a plot, with the characters of tags and entities escaped.
+/// Returns a title, label or hover text for a plot, with the characters &, < and > escaped.
 function plain(text) {
   return oneLine(text).replace(/&/g, "&amp;").replace(/</g, "&lt;").replace(/>/g, "&gt;");
 }
@@ -63,18 +63,19 @@ function table(header, rows, left) {
   return element("div", { class: "scroll" }, element("table", {}, head, body));
 }
 
-/// Returns a table of the page's data, {titles, rows, left}. Texts may come from a config.
+/// Returns a table from a part {titles, rows, left} of the page's data. The texts may come from a config.
 function dataTable({ titles, rows, left }) {
   return table(titles, rows.map((row) => row.map((cell, i) => (i < left ? foreign(cell) : cell))), left);
 }
 
-/// Returns a list of values with their names, the most important first.
+/// Returns a list element of values with their names.
 function factList(facts) {
   const items = facts.map(([value, name]) => element("li", {}, element("b", {}, String(value)), element("span", {}, name)));
   return element("ul", { class: "facts" }, ...items);
 }
 
-/// Returns a list of warnings. Each warning is a list of texts and elements. Returns nothing if there are no warnings.
+/// Returns an array with the list element of the warnings, or an empty array if there are none. Each warning is an
+/// array of texts and elements.
 function warningList(warnings) {
   const items = warnings.map((words) => element("li", {}, ...words));
   return items.length > 0 ? [element("ul", { class: "warnings", id: "warnings" }, ...items)] : [];
@@ -123,7 +124,8 @@ const kWhere = kColours.viridis;
 /// The units of all columns, from data.units.
 let units = {};
 
-/// Returns the unit in which a column of a record is shown. A value in SI times `factor` is in that unit.
+/// Returns the unit in which a column of a record is shown. A value in SI units times `factor` is the value in that
+/// unit.
 const unitOf = (name) => units[name] ?? { unit: "", factor: 1 };
 
 /// Returns a value of a column with its unit: "2.61 mm".
@@ -140,9 +142,9 @@ function withUnit(name) {
 
 const kGrey = "#9a9a9a";
 
-/// Whether the page is as narrow as on a phone, as in style.css.
+/// Media query: whether the page is as narrow as on a phone. style.css has the same limit.
 const kNarrow = matchMedia("(max-width: 640px)");
-/// Whether the pointer is a finger. Fingers scroll instead of selecting areas of plots.
+/// Media query: whether the pointer is a finger. Fingers scroll the page instead of selecting areas of plots.
 const kFingers = matchMedia("(pointer: coarse)");
 
 /// Returns the layout that all plots share, changed by `more`.
@@ -194,7 +196,7 @@ function showError(trouble) {
   console.error(trouble);
 }
 
-/// Starts a drawing after the previous one has ended.
+/// Calls `draw` after the previous drawing has ended.
 function inTurn(draw) {
   inTurn.last = (inTurn.last ?? Promise.resolve()).then(draw).catch(showError);
   return inTurn.last;
@@ -207,13 +209,13 @@ function drawLatest(input, draw) {
   return inTurn(() => (wanted === input.value ? draw(Number(wanted)) : undefined));
 }
 
-/// Publishes the description of the current drawing, for which tests wait.
+/// Publishes a description of the current drawing, for which tests wait.
 function publishDrawn(what) {
   document.body.dataset.drawn = String(what);
 }
 
 /// Unpacks the page's data and passes it to `draw`. `draw` fills the page and returns a function that redraws all plots
-/// in the present colours. If `draw` fails, the page shows the error.
+/// in the colours of the current theme. If `draw` fails, the page shows the error.
 async function openPage(draw) {
   try {
     const [data, maps] = await Promise.all([unpack("data").json(), unpack("maps").arrayBuffer(), loadPlotly()]);

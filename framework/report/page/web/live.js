@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
-// Updates of the pages that `palpate watch` serves. A page in a file has no data.live, and the functions of this file
-// do nothing.
+// Updates of the pages that `palpate watch` serves. On a page in a file, data.live is undefined, and these functions do
+// nothing.
 
-/// Waits for this many milliseconds, or until the signal `until` is aborted.
+/// Returns a promise that is fulfilled after this many milliseconds, or when the signal `until` is aborted.
 const pause = (milliseconds, until = new AbortController().signal) =>
   new Promise((done) => {
     setTimeout(done, milliseconds);
     until.addEventListener("abort", done, { once: true });
   });
 
-/// Returns an element that shows the state of the connection. Returns nothing for a page in a file.
+/// Returns an element that shows the state of the connection; "" on a page in a file.
 function liveNote(data) {
   return data.live === undefined ? "" : element("span", { id: "live", class: "live" }, "live");
 }
@@ -19,8 +19,9 @@ function showConnection(words) {
   if (note) note.textContent = words;
 }
 
-/// Requests updates from the server in a loop. `take` applies each update, between two drawings. A page in the
-/// background sends requests rarely and holds no connection open, because a browser allows few connections per server.
+/// Requests updates from the server in a loop. `take` applies each update; no drawing runs at the same time. A page in
+/// the background sends requests rarely and keeps no connection open, because browsers allow few connections per
+/// server.
 async function follow(data, take) {
   const kSleep = 20000;
   const kAfterTrouble = 2000;
@@ -59,13 +60,13 @@ function drawWaiting(data) {
   return () => publishDrawn("waiting");
 }
 
-/// Shows why the page cannot be updated, as long as this is so.
+/// Shows the reason why the page cannot be updated. The next successful update removes it.
 function showTrouble(trouble) {
   document.getElementById("standing").append(element("p", { class: "trouble" }, foreign(trouble)));
 }
 
-/// Largest number of values in a page's maps. A page with more values is reloaded and then has maps of fewer moments,
-/// because the server keeps only these for a long run.
+/// Largest number of values in a page's maps. A page with more values is reloaded. It then has maps of fewer moments,
+/// because for a long run the server keeps the maps of only some moments.
 const kMostNumbers = 12e6;
 
 /// Adds moments to the page of a run. If the slider was at the last tap, it moves to the new last tap.
@@ -88,11 +89,11 @@ async function growRun(slider, news) {
   if (newest) input.value = input.max;
   document.getElementById("standing").replaceChildren(...runState(data));
   slider.stale = true;
-  slider.show();  // The slider draws after this update.
+  slider.show();  // The slider draws when this update has been applied.
 }
 
-/// Applies new results to the page of a sweep. The choices of its reader are kept. If the columns have changed, a new
-/// page is needed.
+/// Applies new results to the page of a sweep. The choices of the reader are kept. If the columns have changed, the
+/// page is reloaded.
 function growSweep(sweep, news) {
   const fresh = { ...news.sweep, live: news.at };
   if (fresh.trouble) return showTrouble(fresh.trouble);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // A player that shows a run tap by tap.
 
-/// A button that moves a slider through the taps. The player starts at the slider's tap, or at the first tap if the
-/// slider is at the last one. It stops at the last tap, or when the reader moves the slider.
+/// A button that moves a slider through the taps. The player starts at the current tap of the slider, or before the
+/// first tap if the slider is at its end. The player stops at the last tap, or when the reader moves the slider.
 class Player {
   constructor(slider) {
     this.slider = slider;

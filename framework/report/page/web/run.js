@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The page of a run, with a slider over the taps. It shows surface and maps at the chosen tap, and curves over all
-// taps.
+// The page of a run. It has a slider to choose a tap, surface and maps after this tap, and curves against all taps.
 
 /// Layouts of axes, by the value `axis` of a panel (curves.hpp).
 const kAxes = {
@@ -10,7 +9,7 @@ const kAxes = {
   logarithmic: { type: "log", dtick: 1 },
 };
 
-/// Draws a panel of curves over all taps.
+/// Draws a panel of curves against the taps.
 function drawCurves(id, panel, taps) {
   const traces = panel.curves.map(({ name, values }, i) => ({
     ...points(plain(name), taps, values, [], { size: 4, symbol: ["circle", "square", "diamond", "triangle-up", "x"][i % 5] }),
@@ -44,7 +43,7 @@ function facts(data) {
   return factList(items.filter(([value]) => value !== kNothing).map(([value, unit, name]) => [`${value}${unit}`, name]));
 }
 
-/// Returns the state of a run with its numbers and warnings. Every tap may change them.
+/// Returns the elements that may change with every tap: state, numbers and warnings of the run.
 function runState(data) {
   const state = data.state === "done" ? `stopped by: ${data.stop_reason}` : data.stop_reason ? `${data.state}: ${data.stop_reason}` : data.state;
   const footprint = data.any_side ? [] : [", footprint ", foreign(data.footprint)];
@@ -126,7 +125,8 @@ class Slider {
     }
   }
 
-  /// Returns the number of values in all maps or surfaces. `news` is an update, which has the number of maps.
+  /// Returns the number of values in all maps or surfaces. `news` is an update, whose list `maps` has one entry per
+  /// map.
   numbers(news) {
     if (this.data.any_side) return 10 * this.surface.surfaces.reduce((sum, { x }) => sum + x.length, 0);
     return this.data.shown.length * news.maps.length * this.data.x.length * this.data.y.length;
@@ -156,7 +156,7 @@ class Slider {
     });
   }
 
-  /// Draws the moment at which the slider is.
+  /// Draws the moment that the slider has chosen.
   show() {
     return drawLatest(this.input, (at) => this.draw(at));
   }
@@ -187,7 +187,7 @@ class Slider {
   }
 }
 
-/// Returns a line with the quantities that never change.
+/// Returns a line about the quantities that are constant in the run.
 const constants = (texts) => (texts.length > 0 ? [element("p", { class: "sub constants" }, "Constant over all taps: ", foreign(texts.join("; ")), ".")] : []);
 
 /// Returns the section with the maps of a run from above.

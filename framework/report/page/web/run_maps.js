@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Surface and maps of a run at one moment, with its taps.
 
-/// Returns the maps by name. A map is a list of frames, and a frame is a list of rows.
+/// Unpacks the maps that pack_maps() in run_page.cpp has packed. Returns an object from names to maps. A map is a list
+/// of frames, and a frame is a list of rows.
 function unpackMaps(bytes, described, columns, rows) {
   const out = {};
   const cells = columns * rows;
@@ -28,7 +29,7 @@ const product = (a, b) => a.map((line, row) => line.map((value, column) => value
 /// Returns whether the contact of a tap counts as on an object at a moment. Returns null for a tap without a contact.
 const labelAt = (moment, tap) => (tap.on_object === null ? null : tap.on_object !== moment.relabelled.includes(tap.tap));
 
-/// Returns the first `taps` taps of a run in three lists: on the object, on the desk, failed. The labels are those
+/// Returns the first `taps` taps of a run in three lists: on the object, on the desk, failed. The labels are the labels
 /// after these taps.
 const tapsUntil = (run, taps) => [true, false, null].map((touched) => run.taps.slice(0, taps).filter((tap) => labelAt(run.moments[taps], tap) === touched));
 
@@ -43,7 +44,7 @@ function hover(tap) {
 /// Returns a list with the next tap, or an empty list. `word` is the hover text.
 const nextOf = (moment) => (moment.next ? [{ ...moment.next, word: `next, tap ${moment.taps + 1}` }] : []);
 
-/// Returns a trace with marks of taps in the plane. `word`, if any, is the hover text.
+/// Returns a trace with marks of taps in the plane. If a tap has `word`, it is the hover text.
 function markTrace(taps, name, marker, more = {}) {
   const along = (side) => taps.map((tap) => tap[side] * kCentimetres);
   return points(name, along("x"), along("y"), taps.map((tap) => tap.word ?? hover(tap)), marker, more);
@@ -78,7 +79,7 @@ function marks(data, moment) {
 }
 
 /// Returns the panels of maps, and {title, value} for each map that has the same value in all cells and at all moments.
-/// In a run that is not finished, no map counts as constant.
+/// On a page that receives updates, no map counts as constant.
 function mapPanels(data, maps) {
   const panel = (id, of, rangeOf = () => [0, 1], colours = kWhere) => {
     const frames = of(maps);
@@ -98,7 +99,7 @@ function mapPanels(data, maps) {
   if (maps.score) panels.push(panel("score", ({ score }) => score, (frames) => extent(frames.flat(2))));
   const varied = ({ frames }) => {
     const [least, most] = extent(frames.flat(2));
-    return data.live !== undefined || most - least > 1e-6;  // Changes by rounding errors are ignored.
+    return data.live !== undefined || most - least > 1e-6;  // Differences up to 1e-6 are rounding errors.
   };
   const constant = panels.filter((one) => !varied(one)).map(({ title, frames }) => ({ title, value: frames[0][0][0] }));
   return [panels.filter(varied), constant];
@@ -110,7 +111,8 @@ function deviationBar(label) {
   return colourBar(label, kNarrow.matches ? below : { len: 0.8 });
 }
 
-/// Returns colours for standard deviations of the height in centimetres. The page's data has the scale.
+/// Returns colours for standard deviations of the height in centimetres. The second argument is the colour scale of the
+/// frame, from the data of the page.
 function deviationColours(lines, { low, high, logarithmic, label }) {
   const bar = deviationBar(label);
   if (!logarithmic) return { surfacecolor: lines, cmin: low, cmax: high, colorbar: bar };
@@ -133,7 +135,7 @@ function planeAxes(data) {
   };
 }
 
-/// Returns the positions of a map's cells along an axis; plotly cannot infer the width of a single cell.
+/// Returns the positions of a map's cells along an axis. A single cell also needs its width, which plotly cannot infer.
 function cells(name, centres, side) {
   if (centres.length > 1) return { [name]: centres.map((value) => value * kCentimetres) };
   return { [`${name}0`]: (side / 2) * kCentimetres, [`d${name}`]: side * kCentimetres };
@@ -168,7 +170,7 @@ class SurfaceView {
     this.y = data.y.map((value) => value * kCentimetres);
   }
 
-  /// Adds the maps of further moments, and replaces the truth by its present state.
+  /// Adds the maps of further moments, and replaces the true heights by their current state.
   grow(maps) {
     this.heights.push(...maps.height.map((lines) => scaled(lines, kCentimetres)));
     this.deviations.push(...maps.deviation.map((lines) => scaled(lines, kCentimetres)));
@@ -196,14 +198,16 @@ class SurfaceView {
       x: this.x,
       y: this.y,
       z: this.heights[frame],
-      // The scale is chosen per frame, because a fit may change the deviations by a factor of a hundred.
+      // The colour scale is chosen per frame, because a fit of the hyperparameters may change the standard deviations
+      // by a factor of a hundred.
       ...deviationColours(this.deviations[frame], this.colours[frame]),
       colorscale: kUnknown,
       customdata: this.deviations[frame],
       hovertemplate: "x %{x:.1f} cm, y %{y:.1f} cm<br>height %{z:.4r} cm<br>standard deviation %{customdata:.3r} cm<extra></extra>",
     };
     const [on, off] = tapsUntil(this.data, moment.taps);
-    // The mark of the next tap is at the top, from where the arm comes, so that the surface never hides it.
+    // The mark of the next tap is at the top of the plot, so that the surface never hides it. The arm also comes from
+    // above.
     const above = this.range[1] / kCentimetres;
     const next = nextOf(moment).map((one) => ({ ...one, height: this.heightAt(frame, one) / kCentimetres, above }));
     const raised = (taps, name, marker) => markTrace(taps, name, marker, { type: "scatter3d", z: taps.map((tap) => this.pin(tap)[1]) });
@@ -212,7 +216,7 @@ class SurfaceView {
       this.pins([...on, ...off, ...next]),
       raised(on, "on the object", { symbol: "circle", size: kNarrow.matches ? 4 : 6, color: "#ffffff", line: edge("#000000", 2) }),
       raised(off, "on the desk", { symbol: "cross", size: 5, color: themed("ink") }),
-      // In three dimensions, plotly has no stars, but it has letters, which always face the viewer.
+      // In three dimensions, plotly has no star symbols. Text such as ★ is possible and always faces the viewer.
       {
         ...raised(next, "next", {}),
         mode: "text",
@@ -257,7 +261,7 @@ class SurfaceView {
   /// Returns a panel with the standard deviations that the colours of the surface show.
   deviationPanel() {
     const rangeOf = (frames) => [0, extent(frames.flat(2))[1]];
-    const frames = this.deviations;  // The list grows with the surface.
+    const frames = this.deviations;  // grow() extends this list.
     return { id: "deviation", title: this.data.titles.deviation, bar: "cm", of: () => [], frames, rangeOf, range: rangeOf(frames), colours: kUnknown };
   }
 
@@ -281,8 +285,8 @@ class SurfaceView {
     const low = Math.min(this.range[0], this.data.desk * kCentimetres);
     const range = [low, this.range[1] + this.lift + 0.05 * (this.range[1] - low) + 0.1];
     const [width, depth] = [this.data.width, this.data.depth].map((metres) => metres * kCentimetres);
-    // The surface fills the plot in this view. If the height were equal to the width, the plot would reach the colour
-    // bar below.
+    // With this scale, the surface fills the plot. On a narrow screen the scale is smaller, because the surface would
+    // otherwise reach the colour bar below.
     const side = Math.max(width, depth) / (kNarrow.matches ? 1.05 : 1.3);
     return turntable({
       aspectratio: { x: width / side, y: depth / side, z: Math.max((range[1] - range[0]) / side, 0.15) },

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Closed surface and taps of a run from any side at one moment.
 
-/// Returns values from their differences `steps`, multiplied by `unit`.
+/// Returns the cumulative sums of `steps`, multiplied by `unit`.
 function summed(steps, unit) {
   let sum = 0;
   return steps.map((step) => unit * (sum += step));
@@ -16,7 +16,7 @@ function unpackSurface({ x, y, z, i, j, k, deviation }) {
 const fromAnySide = (tap) => tap["direction.x"] !== undefined;
 const kAxes3 = ["x", "y", "z"];
 const directionOf = (tap) => kAxes3.map((side) => tap[`direction.${side}`]);
-/// Returns the position at this length of a tap's path, in metres.
+/// Returns the position that is `way` metres along the path of a tap, in metres.
 const along = (tap, way) => kAxes3.map((side, i) => tap[side] + way * directionOf(tap)[i]);
 
 /// Returns a text about the direction of a tap.
@@ -69,8 +69,8 @@ class SpaceView {
     return this.spatial ? `${what} Drag to turn${kFingers.matches ? "." : ", Ctrl and wheel to zoom."}` : "The surface is not drawn, because this browser has no WebGL.";
   }
 
-  /// Returns the last centimetres of a tap's path. For a tap without a contact, returns the part of the path within the
-  /// picture, or null if there is none.
+  /// Returns the two ends of a tap's arrow: the last 3 cm of the path (6 cm for the next tap). For a tap without a
+  /// contact, returns the ends of the part of the path within the picture, or null if there is no such part.
   arrow(tap) {
     const shaft = tap.word ? 0.06 : 0.03;  // The arrow of the next tap is longer.
     if (tap.on_object !== null) return [along(tap, Math.max(0, tap.along - shaft)), along(tap, tap.along)];
@@ -83,7 +83,7 @@ class SpaceView {
     return begin < end ? [along(tap, begin), along(tap, end)] : null;
   }
 
-  /// Returns taps as arrows of one colour.
+  /// Returns traces that show taps as arrows of one colour.
   arrows(taps, name, color, size = 0.7) {
     const drawn = taps.map((tap) => ({ ends: this.arrow(tap), tap })).filter(({ ends }) => ends);
     const words = ({ tap }) => tap.word ?? `${hover(tap)}<br>${slant(tap)}`;
@@ -102,7 +102,7 @@ class SpaceView {
   traces(frame, moment) {
     const surface = this.surfaces[frame];
     const [on, off, others] = tapsUntil(this.data, moment.taps);
-    const missed = others.filter((tap) => tap.outcome === "no_contact");  // The other failed taps have no known path.
+    const missed = others.filter((tap) => tap.outcome === "no_contact");  // For other failed taps, the path is unknown.
     const most = Math.max(extent(surface.deviation)[1], 0);
     const next = nextOf(moment).map((one) => ({ ...one, on_object: one.along < one.length ? false : null }));
     const out = [

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The page of several runs. It shows errors over taps and over robot time, and the surfaces after the number of taps
-// that a slider sets.
+// The page of several runs. It shows errors against taps and against robot time, and the surfaces after a number of
+// taps that a slider sets.
 
 /// Returns the letter that stands for a run in plots.
 const letterOf = (index) => String.fromCharCode("A".charCodeAt(0) + index);
@@ -9,10 +9,10 @@ const wordsOf = (run, index) => `${letterOf(index)}: ${run.name} ${run.id}`;
 /// Returns the title of an error with its unit.
 const errorTitle = ([name, title]) => (unitOf(name).unit ? `${title} [${unitOf(name).unit}]` : title);
 
-/// Returns the index of the last map of a run with at most this many taps, or of the first map if all have more.
+/// Returns the index of the last map of a run after at most this many taps, or of the first map if all maps are later.
 const frameAt = (run, taps) => Math.max(0, run.shown.findLastIndex((moment) => moment <= taps));
 
-/// The plots of one error against two costs. Each plot has all runs.
+/// The plots of one error against taps and against robot time. Each plot shows all runs.
 class ErrorPlots {
   constructor(data) {
     this.data = data;

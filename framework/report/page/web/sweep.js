@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // The page of a sweep: the plot of cost against error, the table of jobs, and the controls.
 
-/// Returns an axis for values. It is logarithmic if the largest value is at least 20 times the least. `low` and `high`
-/// are the ends of the axis. The axis includes interval ends (`ends`) that exceed the values by at most half their
-/// range, because intervals from few seeds may be much wider.
+/// Returns an axis for values. The axis is logarithmic if the largest value is more than 20 times the least. `low` and
+/// `high` are the ends of the axis. The axis extends beyond the values to the ends of intervals (`ends`), but by at
+/// most half the range of the values, because intervals from few seeds may be much wider.
 function rangeOf(values, ends) {
   const [[least, most], [lowest, highest]] = [values, ends].map(extent);
   const room = Math.max(most - least, 1e-12) / 2;
@@ -19,7 +19,8 @@ function rangeOf(values, ends) {
   return { type: "linear", low: low - margin, high: high + margin, range: [low - margin, high + margin] };
 }
 
-/// Draws the settings by mean cost and error, with a line along the front. Also draws their runs; failed runs are grey.
+/// Draws the settings at their mean cost and error, with a line along the front. Also draws the runs of the settings;
+/// failed runs are grey.
 function drawFront(sweep, choice) {
   const settings = settingsOf(sweep, choice);
   const here = (jobs) => jobs.filter((job) => sweep.sceneOf(job) === choice.scene);
@@ -58,7 +59,7 @@ function frontTraces(sweep, settings, done, failed, x, y, edge) {
       type: "data",
       symmetric: false,
       array: list.map((one) => one[kind].half ?? 0),
-      // On a logarithmic axis, bars are cut at the end of the axis.
+      // On a logarithmic axis, bars are cut just below the lower end of the axis.
       arrayminus: list.map((one) => Math.min(one[kind].half ?? 0, type === "log" ? one[kind].mean - low / 2 : Infinity)),
       thickness: 1,
       width: 2,
@@ -173,12 +174,12 @@ class JobTable {
 
   /// Returns the number of a job, as a link if the job has a page.
   link(job) {
-    const live = this.sweep.live !== undefined;  // The server makes the pages of jobs.
+    const live = this.sweep.live !== undefined;  // On a live page, the server makes the pages of jobs.
     if (job.state === "missing" || !(live || job.reported)) return String(job.index);
     return element("a", { href: `jobs/${encodeURIComponent(job.id)}/${live ? "" : "report.html"}` }, String(job.index));
   }
 
-  /// Returns a note that explains how to make the page of a job. Returns nothing if all jobs have a page.
+  /// Returns a note that explains how to make the page of a job; an empty list if all jobs have a page.
   howToReport() {
     const bare = this.sweep.jobs.find((job) => !job.reported && job.state !== "missing");
     if (!bare || this.sweep.live !== undefined) return [];
@@ -249,7 +250,7 @@ function troubles(sweep) {
   return out;
 }
 
-/// Returns a note if the page has only a sample of the jobs.
+/// Returns a note if the page has only a sample of the jobs; otherwise an empty list.
 function sampleNote({ sampled, jobs }) {
   if (!sampled) return [];
   const words = `This page has ${jobs.length} of ${sampled.jobs} jobs, one of ${sampled.step}, taken evenly from all settings: plots, means and the table below show only these. Counts and failures cover all jobs, and so do results.csv, 'palpate compare' and 'palpate pareto'.`;
@@ -263,7 +264,7 @@ function sweepState(sweep) {
   return [factList([[sweep.tally.jobs, "jobs"], ...counts]), ...sampleNote(sweep), ...warningList(troubles(sweep))];
 }
 
-/// Returns a table of the swept keys and their values, which replace those of the config.
+/// Returns a table of the swept keys with their values. These values replace the values in the config.
 function sweptValues({ keys }) {
   const kMost = 24;
   const words = ({ values }) => [...values.slice(0, kMost).map((value) => value || kNothing), ...(values.length > kMost ? ["…"] : [])].join(", ");
@@ -284,7 +285,7 @@ function drawSweep(data) {
   return redraw;
 }
 
-/// Draws the page of a sweep in which no job has ended.
+/// Draws the page of a sweep without results to plot.
 function noPanels(sweep) {
   const jobs = new JobTable(sweep);
   document.body.append(element("p", { id: "nothing" }, "No job has a result yet: there is nothing to draw."), jobs.place());
@@ -293,7 +294,7 @@ function noPanels(sweep) {
   return () => publishDrawn(1);
 }
 
-/// Adds the panels. `chooser` makes their controls.
+/// Adds the panels to the page. `chooser` makes their controls.
 function placePanels(sweep, chooser) {
   const columns = [...sweep.columns.keys()];
   const [errors, costs] = ["is_error", "is_cost"].map((role) => columns.filter((name) => sweep.columns.get(name)[role]));

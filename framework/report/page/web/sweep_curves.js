@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Curves of groups over their taps, with one plot per scene. The numbers come from analysis/group_curves.hpp.
+// Curves of groups of jobs against taps or robot time, with one plot per scene. analysis/group_curves.hpp computes the
+// numbers.
 
 /// Returns the scenes that have curves.
 const scenesOfCurves = (sweep) => [...new Set(sweep.curves.sets[0].curves.map(({ scene }) => scene))];
@@ -27,7 +28,7 @@ function commandOn(name, folder) {
   return element("code", {}, foreign(`palpate ${name} ${word}`));
 }
 
-/// Returns a section that explains how to get curves. Returns nothing if the page cannot have curves.
+/// Returns a section that explains how to get curves; an empty list if the page cannot have curves.
 function noCurves(sweep) {
   if (sweep.live !== undefined || sweep.sampled || sweep.done.length === 0) return [];
   return [section(kOverTaps, element("p", { class: "sub", id: "how_to_curves" }, commandOn("curves", sweep.folder), " computes the errors after each tap from the record. Make this page again to show them."))];
@@ -59,7 +60,7 @@ function drawCurves(sweep, { curve_of: metric, against, curves_by: by }) {
       const curves = set.curves.filter((one) => one.scene === scene);
       const traces = curves.flatMap((one) => curveTraces(one, names.indexOf(one.name), metric, against));
       const lines = curves.flatMap((one) => one.mean.filter((value) => value !== null).map((value) => value * unitOf(metric).factor));
-      // The axis covers the lines and only a part of wide bands, because bands of the first taps may be very wide.
+      // The axis covers the lines, but only a part of wide bands, because bands after the first taps may be very wide.
       const [least, most] = extent(lines);
       const room = Math.max(most - least, 1e-12);
       const highest = extent(traces.flatMap(({ y }) => y.filter((value) => value !== null)))[1];

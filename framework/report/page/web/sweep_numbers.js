@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
 // Data for the panels on the page of a sweep: columns, groups, means, and the front.
 
-/// Returns text on one line, with at most `most` letters.
+/// Returns text on one line, with rounded numbers and at most `most` letters.
 function brief(text, most = 36) {
   const letters = Array.from(oneLine(text).replace(/\d*\.\d{5,}/g, (digits) => shown(Number(digits))));
   return letters.length > most ? `${letters.slice(0, most - 1).join("")}…` : letters.join("");
 }
 
-/// Returns short names that differ from each other. They are shortened at their ends or in the middle, or have a number
-/// in front.
+/// Returns short names that differ from each other. Long names are cut at the end. If some names are then equal, long
+/// names are cut in the middle instead, and if necessary all names get a number in front.
 function briefs(names, most = 36) {
   const alike = (texts) => new Set(texts).size < new Set(names).size;
   const ends = names.map((name) => brief(name, most));
@@ -23,10 +23,10 @@ function briefs(names, most = 36) {
 
 const kStates = ["done", "failed", "running", "unfinished", "missing"];
 
-/// The data of a sweep, as panels read it.
+/// The data of a sweep in the form that the panels use.
 class SweepData {
   constructor(data) {
-    Object.assign(this, data);  // The data has jobs, keys, first_looks and tally.
+    Object.assign(this, data);  // This adds the fields of sweep_data(), such as jobs, keys, first_looks and tally.
     this.sampled = this.tally.step > 1 ? this.tally : null;
     this.jobs.forEach((job, place) => Object.assign(job, { place }));
     [this.done, this.failed] = ["done", "failed"].map((state) => this.jobs.filter((job) => job.state === state));
@@ -49,12 +49,12 @@ class SweepData {
     return this.columns.get(column)?.better === "more is better";
   }
 
-  /// Returns the number of a job in SI units, or null.
+  /// Returns the value of a column for a job in SI units, or null.
   raw(column, job) {
     return this.columns.get(column).numbers[job.place];
   }
 
-  /// Returns the same number in its shown unit.
+  /// Returns the value of a column for a job in the unit that the page shows, or null.
   number(column, job) {
     const value = this.raw(column, job);
     return value === null ? null : value * unitOf(column).factor;
@@ -69,13 +69,14 @@ class SweepData {
     return this.units_of_jobs[job.place];
   }
 
-  /// Returns "20 seeds". If the seed is not swept, returns "12 units, copies count once" for jobs with copies, else "".
+  /// Returns "20 seeds". If the seed is not swept, returns "12 units, copies count once" if there are copies of runs,
+  /// else "".
   unitWords(clusters, jobs) {
     if (this.seeds) return counted(clusters, "seed");
     return clusters < jobs ? `${counted(clusters, "unit")}, copies count once` : "";
   }
 
-  /// Returns the value of a key as written. Returns a dash if the job's plugins do not have the option.
+  /// Returns a job's value of a key, as written in the config; a dash if the job's plugins do not have the option.
   text(key, job) {
     return key.values[key.of_job[job.place]] || kNothing;
   }
@@ -97,7 +98,7 @@ class SweepData {
   }
 
   /// Returns the groups of jobs with equal values of `keys`, sorted by these values, as a list of {jobs, places}.
-  /// `places` are the indices of the values.
+  /// `places` has the index of the group's value for each key.
   groups(keys) {
     const found = new Map();
     for (const job of this.jobs) {
@@ -123,8 +124,8 @@ const meanOf = (values) => {
   return least === most ? least : values.reduce((sum, one) => sum + one / values.length, 0);
 };
 
-/// Returns mean, standard deviation, number of values, and number of their units. The standard deviation is null for
-/// fewer than two values.
+/// Returns mean, standard deviation, number of values, and number of different units of statistics. The standard
+/// deviation is null for fewer than two values.
 function spread(values, units) {
   const count = values.length;
   const mean = count > 0 ? meanOf(values) : null;
@@ -133,7 +134,7 @@ function spread(values, units) {
 }
 
 /// Returns the mean of a column over the jobs of a setting, and half the width of its 95 % interval (null for none).
-/// The program has computed both. A setting with one job has the job's number.
+/// The program has computed both. If every setting has one job, the mean is the value of the job.
 function estimate(sweep, name, setting) {
   const { numbers, estimates } = sweep.columns.get(name);
   const { factor } = unitOf(name);
@@ -148,8 +149,9 @@ function estimate(sweep, name, setting) {
   return { count, clusters: count, mean: inUnit(mean), half: null };
 }
 
-/// Returns those settings of a scene (a name from sweep.scenes()) that have both cost and error: {words, jobs, cost,
-/// error, complete, front}. The settings on the front come first. `front` counts them from 1 and is 0 for all others.
+/// Returns the settings of a scene (a name from sweep.scenes()) that have both cost and error: {words, jobs, cost,
+/// error, complete, front}. The settings on the front come first. `front` numbers these settings from 1, and is 0 for
+/// all others.
 function settingsOf(sweep, { cost, error, scene }) {
   const keys = sweep.varying.filter((key) => !sweep.scene_keys.includes(key.name));
   const all = sweep.setting_jobs.map((places, i) => {
@@ -164,7 +166,7 @@ function settingsOf(sweep, { cost, error, scene }) {
   return [...front, ...all.filter((one) => ofScene(one) && one.front === 0 && one.cost.count > 0 && one.error.count > 0)];
 }
 
-/// Returns the main columns of results that the page has, with the most important one first.
+/// Returns the main columns of results that the page has, the most important column first.
 function mainColumns(sweep) {
   return sweep.first_looks.filter((name) => sweep.columns.has(name));
 }
@@ -175,8 +177,8 @@ function differs(sweep, name) {
   return values.some((value) => value !== values[0]);
 }
 
-/// Returns the first pair of keys for which the largest share of cells has values. If there are fewer than two keys,
-/// returns these.
+/// Returns the pair of keys with the largest share of value combinations that have jobs, and the first such pair in
+/// case of a tie. If there are fewer than two keys, "" replaces missing keys.
 function bestPair(sweep) {
   const keys = sweep.varying;
   let best = [keys[0]?.name ?? sweep.keys[0]?.name ?? "", ""];

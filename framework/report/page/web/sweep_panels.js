@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-// Panels with one number per job: cells, groups, and lines across all keys. One function draws each panel, from the
-// sweep and the choices of the page's reader.
+// Panels that show one number per job: cells, groups, and lines across all keys. One function draws each panel. Its
+// arguments are the sweep and the choices of the reader.
 
-/// Returns an axis with enough space for its names.
+/// Returns an axis whose margin grows with its tick labels.
 const roomyAxis = (title, more = {}) => axis(title, { automargin: true, ...more });
 
-/// Returns an axis with one position per value of a key, or per group. If there are many positions, only some have
-/// names.
+/// Returns an axis with one position per value of a key, or per group. If there are many positions, only some have a
+/// tick label.
 function placesAxis(title, names, more = {}, most = 36, room = 25) {
   const texts = briefs(names, most);
   const step = Math.ceil(names.length / room);
@@ -80,7 +80,7 @@ function drawCells(sweep, { across, up, metric }) {
   return keys.length < 2 ? drawPoints(sweep, keys[0], metric, cells, over) : drawMaps(sweep, keys, metric, cells, over);
 }
 
-/// Returns whether any cell has two values.
+/// Returns whether any cell has at least two values.
 const hasSpread = (cells) => cells.some((one) => one.deviation !== null);
 
 /// With one key, draws means as points. Bars show the standard deviations.
@@ -95,7 +95,8 @@ function drawPoints(sweep, key, metric, cells, over) {
 /// With two keys, draws means as cells of a map, and the standard deviations as a second map.
 function drawMaps(sweep, [across, up], metric, cells, over) {
   const count = across.values.length * up.values.length;
-  // Continuous keys have many cells, of which most are empty. A square therefore marks each filled cell.
+  // Keys with values sampled from continuous ranges have many cells, most of which are empty. In this case, a square
+  // marks each filled cell.
   const sparse = count > 400 && cells.filter((one) => one.mean !== null).length < count / 8;
   const trace = (get, title, colorscale) => {
     const colours = { colorscale, colorbar: colourBar(title) };
@@ -133,7 +134,7 @@ function drawMaps(sweep, [across, up], metric, cells, over) {
   ]);
 }
 
-/// Returns a horizontal box of the values of some jobs, at position `i`.
+/// Returns a horizontal box plot of the values of some jobs, at position `i`.
 function boxTrace(sweep, metric, jobs, i, colour, withPoints) {
   const valued = jobs.filter((job) => job.state === "done" && sweep.raw(metric, job) !== null);
   return {
@@ -155,7 +156,7 @@ function boxTrace(sweep, metric, jobs, i, colour, withPoints) {
   };
 }
 
-/// Draws one box per group, with the jobs as points.
+/// Draws one box plot per group, with the jobs as points.
 function drawGroups(sweep, { group, then, metric }) {
   const kMostGroups = 40;
   const kMostPoints = 4000;
@@ -235,7 +236,7 @@ function drawParallel(sweep, { metric }) {
       ...(least === 0 && ticks.every(({ at }) => Number.isInteger(at)) ? { tickvals: ticks.map(({ at }) => at), ticktext: ticks.map(({ text }) => text) } : {}),
     })),
     labelfont: { size: 11 },
-    labelangle: -16,  // The angle keeps neighbouring names from overlapping.
+    labelangle: -16,  // Because of the angle, neighbouring names do not overlap.
   };
   return plotOfHeight("parallel", 460, [trace], { margin: { l: 90, r: 60, t: 80, b: 24 } });
 }

@@ -5,8 +5,8 @@
 const kThemeKey = "palpate-theme";
 const kSystemDark = matchMedia("(prefers-color-scheme: dark)");
 
-/// Returns the theme that the reader chose on an earlier page, "light" or "dark". Returns null if there is none, or if
-/// the browser stores nothing.
+/// Returns the theme that the reader chose on an earlier page, "light" or "dark". Returns null if no theme was chosen,
+/// or if the browser stores nothing.
 function rememberedTheme() {
   try {
     return localStorage.getItem(kThemeKey);
@@ -15,27 +15,27 @@ function rememberedTheme() {
   }
 }
 
-/// Stores the chosen theme for all pages; null removes it. If the browser stores nothing, the choice holds while the
+/// Stores the chosen theme for all pages; null removes it. If the browser stores nothing, the choice is valid while the
 /// page is open.
 function rememberTheme(theme) {
   try {
     if (theme) localStorage.setItem(kThemeKey, theme);
     else localStorage.removeItem(kThemeKey);
   } catch {
-    // Without storage, only later pages lack the choice.
+    // Without storage, the choice is valid for this page only.
   }
 }
 
 /// Returns the shown theme, "light" or "dark".
 const theme = () => document.documentElement.dataset.theme ?? (kSystemDark.matches ? "dark" : "light");
 
-/// Sets the theme. null stands for the theme of the system.
+/// Sets the theme. null means the theme of the system.
 function setTheme(chosen) {
   if (chosen) document.documentElement.dataset.theme = chosen;
   else delete document.documentElement.dataset.theme;
 }
 
-/// Returns the present colour `--name` of style.css.
+/// Returns the colour `--name` of style.css in the current theme.
 function themed(name) {
   themed.probe ??= document.documentElement.appendChild(Object.assign(document.createElement("span"), { hidden: true }));
   themed.probe.style.color = `var(--${name})`;
@@ -56,7 +56,7 @@ function themeSwitch(redraw) {
     redraw();
   };
   button.addEventListener("click", () => {
-    // A choice that equals the system's theme is not stored, so that the page follows the system again.
+    // If the choice equals the theme of the system, nothing is stored, so that the page follows the system again.
     const chosen = (other() === "dark") === kSystemDark.matches ? null : other();
     rememberTheme(chosen);
     setTheme(chosen);

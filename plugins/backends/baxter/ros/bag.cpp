@@ -42,7 +42,7 @@ void Bag::open(const std::string& file) {
 
 void Bag::abandon_file() {
   // The destructor of the file would try to write again and throw. So the object is never destroyed. class_loader,
-  // which loads rosbag's plugins, would warn about it at the end of the program.
+  // which loads rosbag's plugins, would warn about that at the end of the program, so its warnings are switched off.
   console_bridge::setLogLevel(console_bridge::CONSOLE_BRIDGE_LOG_ERROR);
   static auto* const abandoned = new std::vector<std::unique_ptr<rosbag::Bag>>;
   static std::mutex mutex;

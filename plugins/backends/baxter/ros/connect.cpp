@@ -32,7 +32,8 @@ constexpr const char* kDescriptionParameter = "/robot_description";
 constexpr const char* kTopics[] = {kJointTopic,     kEndpointTopic,    kStateTopic,      kCollisionTopic,
                                    kAvoidanceTopic, kEndEffectorTopic, kSpeedRatioTopic, kCommandTimeoutTopic,
                                    kCommandTopic,   kClockTopic};
-/// Topics that must have exactly one sender. Joints have two, because a gripper's node sends its own.
+/// Topics that must have exactly one sender. The topic of the joints may have two, because the node of a gripper sends
+/// its own joints.
 constexpr const char* kOfOneNode[] = {kStateTopic, kEndpointTopic, kCollisionTopic, kAvoidanceTopic, kClockTopic};
 
 /// One attempt to join the network.
@@ -135,8 +136,8 @@ class ConnectionAttempt {
     return urdf ? mass_beyond(*urdf, "left_hand") : std::nullopt;
   }
 
-  /// Throws Error if another palpate commands the arm. Each instance checks after its own registration, so of two
-  /// simultaneous starts both throw.
+  /// Throws Error if another palpate commands the arm. Each instance checks after its own registration, so two
+  /// instances that start at the same time both throw.
   void expect_no_other_driver() const {
     const Graph graph = network_.master.graph(until(kExplainedDeadline));
     for (const std::string& node : Graph::of(graph.publishers, kCommandTopic)) {

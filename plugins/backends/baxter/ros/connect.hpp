@@ -20,7 +20,7 @@ struct ConnectionOptions {
 
 /// Joins the network of ROS_MASTER_URI and waits until joints, endpoint and state have arrived and the robot has
 /// subscribed to the commands. roscpp starts with the first connection and runs until the process ends, because it
-/// cannot start twice. All parts of a connection itself end with the returned object. Throws Error (kind `run`) with
+/// cannot start twice. All other parts of a connection end with the returned object. Throws Error (kind `run`) with
 /// cause and remedy within five seconds of real time. Causes: no master, unresolvable host names, missing data, another
 /// robot or software version, messages with another md5 sum.
 std::unique_ptr<Robot> connect(const ConnectionOptions& options);

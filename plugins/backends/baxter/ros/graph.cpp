@@ -30,16 +30,16 @@ using XmlRpc::XmlRpcValue;
 using Why = NetworkError::Why;
 
 constexpr const char* kCaller = "/palpate";
-/// Bytes of an answer; the description of a whole network has about 10'000
+/// Largest number of bytes of an answer; the description of a whole network has about 10'000
 constexpr std::size_t kLongest = 4'000'000;
-constexpr std::size_t kDeepest = 64;  ///< nested elements; the description of a whole network has 17
+constexpr std::size_t kDeepest = 64;  ///< largest number of nested elements; the description of a whole network has 17
 
 NetworkError not_ros() { return {Why::nonsense, "the program that answers there is not ROS"}; }
 
 /// Returns the first address of a name. With AI_NUMERICHOST no name server is used.
 Address first_address(const std::string& host, int flags) {
   addrinfo hints{};
-  const char* ipv6 = std::getenv("ROS_IPV6");  // as roscpp does, because the addresses must predict its connections
+  const char* ipv6 = std::getenv("ROS_IPV6");  // same rule as in roscpp, so that roscpp uses the same addresses
   hints.ai_family = ipv6 != nullptr && std::strcmp(ipv6, "on") == 0 ? AF_UNSPEC : AF_INET;
   hints.ai_socktype = SOCK_STREAM;
   hints.ai_flags = flags;
@@ -76,7 +76,8 @@ std::string http_body(TcpConnection& wire, Deadline deadline) {
 }
 
 /// Returns whether elements are closed correctly and not nested too deeply. The library parses recursively, one step
-/// per nested value, and searches a member's name anywhere. So the name must come first in its member.
+/// per nested value, and searches for the name of a member in all of the following text. So the name must be the first
+/// element of its member.
 bool is_well_formed(std::string_view xml) {
   std::vector<std::string_view> open;
   bool in_member = false;  // whether the position is in a member, before its name
@@ -258,7 +259,7 @@ std::string TcpConnection::receive(std::size_t bytes, Deadline deadline) {
 
 std::optional<HostPort> parse_uri(const std::string& uri, const std::string& scheme) {
   static const std::regex form("([a-z]+)://([^:/ \t]+):([0-9]{1,5})/?");
-  constexpr std::size_t kLongestUri = 1000;  // the library parses recursively, one step per character
+  constexpr std::size_t kLongestUri = 1000;  // std::regex matches recursively, one step per character
   std::smatch parts;
   if (uri.size() > kLongestUri || !std::regex_match(uri, parts, form) || parts[1] != scheme) return {};
   const int port = std::stoi(parts[3]);

@@ -17,7 +17,7 @@
 #include <xmlrpcpp/XmlRpcUtil.h>
 
 namespace ros::master {
-// Part of the library without a header: reads the address of the master.
+// Function of roscpp that no header declares. It reads the address of the master.
 void init(const M_string& remappings);
 }  // namespace ros::master
 

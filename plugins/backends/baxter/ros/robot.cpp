@@ -39,8 +39,8 @@ constexpr auto kStandstill = 2s;
 constexpr auto kSimulatedNap = 150us;
 /// Tolerance in s for rounding, because a simulated clock advances in steps.
 constexpr double kRounding = 1e-6;
-/// Real time that messages get to catch up with a simulated clock, which may be ahead of them on a busy machine.
-/// kAlmostNow is the age in s, of simulated time, at which messages are recent enough.
+/// Longest real time to wait for messages that lag behind a simulated clock on a busy machine. kAlmostNow is the age in
+/// s of simulated time up to which messages are recent enough.
 constexpr auto kCatchUp = 50ms;
 constexpr double kAlmostNow = 0.03;
 
@@ -250,8 +250,8 @@ class RosRobot final : public RosConnection {
     using Event = ros::MessageEvent<const Message>;
     const boost::function<void(const Event&)> heard = [this, topic, take](const Event& event) {
       if (event.getPublisherName() == ros::this_node::getName()) return;
-      // Before the first simulated time, messages have no age. Latched messages arrive only then, so they are kept
-      // without a time.
+      // Before the first simulated time, messages have no reception time. Streams are then ignored. Latched messages
+      // arrive only once, so they are kept without a time.
       if (!event.getReceiptTime().isZero()) {
         bag_->write<Message>(topic, event.getReceiptTime(), event.getConstMessage(), event.getConnectionHeaderPtr());
       } else if (traits::HasHeader<Message>::value || std::is_same_v<Message, msgs::AssemblyState>) {

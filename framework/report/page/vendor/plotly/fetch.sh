@@ -1,7 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# Makes plotly.min.js.gz and LICENSE anew from the npm package plotly.js-dist-min, which is MIT like this project, and
-# refuses any other bytes than these. For a new version: change the three values, run it, look at a report.
+# Recreates plotly.min.js.gz and LICENSE from the npm package plotly.js-dist-min, which has the MIT license like this
+# project. Fails if the bytes do not have the checksums below. For a new version, change the three values below, run
+# this script, and look at a report:
 #   sh framework/report/page/vendor/plotly/fetch.sh
 set -eu
 version=4.1.2
