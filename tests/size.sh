@@ -59,7 +59,7 @@ tests/stability 2435 0
 tests/support 2295 0 # the simulator as a program of the backend process; grids of candidates, which only tests make
 tests/sweep 4085 0
 tests/system 9280 0 # lines of any direction for programs and records; beliefs
-tests/unit 17380 0 # oracles of the footprint: pushes, calibration, enumeration, joint distribution; strategies over other beliefs
+tests/unit 17395 0 # oracles of the footprint: pushes, calibration, enumeration, joint distribution; strategies over other beliefs
 tests/ur_rtde 0 230
 tests/versions 50 17
 '
