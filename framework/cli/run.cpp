@@ -86,6 +86,19 @@ void print_models(const Program& program, const ResolvedConfig& config, const ch
   for (const auto& [model, readers] : models) print_out("{}  {}: {}\n", mark, model, readers);
 }
 
+/// Prints the resolved config in the form that the arguments select.
+void print_resolved_config(const Program& program, const RunArguments& arguments, const ResolvedConfig& config) {
+  if (arguments.identity) {
+    print_data(identity_text(config.notes));
+  } else if (arguments.origins) {
+    print_origins(program.composer.groups(), config);
+  } else {
+    print_data(to_yaml(config.tree));
+    if (const auto no_run = catch_error([&] { print_models(program, config, "# "); }))
+      print_out("# this config cannot be run: {}\n", no_run->what());
+  }
+}
+
 void print_plan(const ResolvedConfig& config, const std::filesystem::path& directory) {
   const RunStatus status = read_status(directory);
   print_out("{}: {} taps of {} with {}, kernel {}, seed {}\n", config.options.name, config.options.taps,
@@ -119,15 +132,7 @@ int run(Program& program, const RunArguments& arguments) {
                               sweep->place.text()));
   }
   if (arguments.print_config) {
-    if (arguments.identity) {
-      print_data(identity_text(config.notes));
-    } else if (arguments.origins) {
-      print_origins(program.composer.groups(), config);
-    } else {
-      print_data(to_yaml(config.tree));
-      if (const auto no_run = catch_error([&] { print_models(program, config, "# "); }))
-        print_out("# this config cannot be run: {}\n", no_run->what());
-    }
+    print_resolved_config(program, arguments, config);
     return kDone;
   }
   const std::filesystem::path directory = directory_of(config, arguments.runs);

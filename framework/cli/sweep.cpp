@@ -287,9 +287,8 @@ int sweep(Program& program, const SweepArguments& arguments) {
                                              });
   const std::string jobs = counted(static_cast<long>(plan->sweep.jobs.size()), "job");
   if (arguments.list) {
-    for (const Job& job : plan->sweep.jobs) {
+    for (const Job& job : plan->sweep.jobs)
       print_out("{}  {}{}\n", job.index, job.id, values_text(plan->sweep, job, "  "));
-    }
     if (!arguments.launch.quiet) print_message(jobs + "\n");
     return kDone;
   }

@@ -95,6 +95,30 @@ void for_allowed(const Eigen::VectorXd& scores, const Allowed& allowed, const Wo
   look(blocks * kBlock, scores.size());
 }
 
+/// A candidate and its score.
+struct Scored {
+  int candidate = -1;  ///< -1: none
+  double score = -std::numeric_limits<double>::infinity();
+  bool before(const Scored& other) const {
+    return score > other.score || (score == other.score && candidate < other.candidate);
+  }
+};
+
+/// Returns the two allowed candidates with the highest scores; of equal scores, the lower index is first.
+std::array<Scored, 2> find_best_two(const Eigen::VectorXd& scores, const Allowed& allowed) {
+  Scored best, second;
+  for_allowed(
+      scores, allowed,
+      [&](double score, int i) {
+        return Scored{i, score}.before(second);
+      },
+      [&](int i) {
+        second = {i, scores(i)};
+        if (second.before(best)) std::swap(best, second);
+      });
+  return {best, second};
+}
+
 /// Returns whether is(score) holds for at least one allowed candidate.
 template <class Is>
 bool any_allowed(const Eigen::VectorXd& scores, const Allowed& allowed, const Is& is) {
@@ -124,24 +148,7 @@ std::vector<int> initial_design(const InitialOptions& options, const CandidateGr
 }
 
 Pick pick_best(const Eigen::VectorXd& scores, const Allowed& allowed, double scale, double tolerance) {
-  struct One {
-    int candidate = -1;
-    double score = -std::numeric_limits<double>::infinity();
-    bool before(const One& other) const {
-      return score > other.score || (score == other.score && candidate < other.candidate);
-    }
-  };
-  One best;  // the first if scores are equal
-  One second;
-  for_allowed(
-      scores, allowed,
-      [&](double score, int i) {
-        return One{i, score}.before(second);
-      },
-      [&](int i) {
-        second = {i, scores(i)};
-        if (second.before(best)) std::swap(best, second);
-      });
+  const auto [best, second] = find_best_two(scores, allowed);
   Pick out;
   if (best.candidate < 0) return out;
   out.candidate = best.candidate;
@@ -158,7 +165,7 @@ Pick pick_best(const Eigen::VectorXd& scores, const Allowed& allowed, double sca
         });
   }
   // The runner-up is the second best candidate, or the best one if the second best was chosen.
-  const One& other = out.candidate == best.candidate ? second : best;
+  const Scored& other = out.candidate == best.candidate ? second : best;
   out.score = scores(out.candidate);
   out.runner_up = other.candidate;
   if (other.candidate >= 0) out.runner_up_score = other.score;

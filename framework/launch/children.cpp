@@ -24,6 +24,8 @@ namespace {
 constexpr const char* kDone = ".";
 constexpr const char* kTrouble = "!";
 
+constexpr double kListenSeconds = 0.1;  // longest wait of one call of listen()
+
 }  // namespace
 
 int cores() { return static_cast<int>(std::max(1U, std::thread::hardware_concurrency())); }
@@ -53,8 +55,7 @@ bool in_children(std::size_t count, int workers, const std::function<void(std::s
   }
   std::size_t done = 0;
   for (bool any = step > 0; any;) {
-    constexpr double kPollSeconds = 0.1;  // longest wait of one call of listen(), seconds
-    ChildProcess::listen(children, kPollSeconds);
+    ChildProcess::listen(children, kListenSeconds);
     const std::size_t before = std::exchange(done, 0);
     any = false;
     for (const ChildProcess* child : children) {

@@ -85,6 +85,44 @@ void for_lines(std::string_view text, const Use& use) {
     use(text.substr(begin, end - begin));
 }
 
+/// Adds the content of a line to `out`.
+void add_line(RecordLine line, RunRecord& out) {
+  out.end.reset();
+  switch (line.kind) {
+    case LineKind::manifest:
+      out.manifest = std::move(line.tree);
+      break;
+    case LineKind::attempt:
+      out.attempts.push_back(std::move(line.row));
+      break;
+    case LineKind::setup:
+      out.setup = std::move(line.tree);
+      break;
+    case LineKind::intent:
+      out.intent = std::move(line.row);
+      break;
+    case LineKind::tap:
+      out.intent.reset();
+      out.taps.push_back(std::move(line.row));
+      break;
+    case LineKind::timing:
+      out.timings.push_back(times_of(line.row));
+      break;
+    case LineKind::objects:
+      out.objects = rows_of(*line.tree.find("objects"));
+      break;
+    case LineKind::note:
+      out.notes.push_back(std::move(line.row));
+      break;
+    case LineKind::end:
+      if (!out.attempts.empty()) out.attempts.back().add("end", line.row.text("end"));
+      out.end = std::move(line.end);
+      break;
+    case LineKind::other:
+      break;
+  }
+}
+
 }  // namespace
 
 const char* ending_name(Ending::How how) { return kHows[static_cast<std::size_t>(how)]; }
@@ -237,43 +275,7 @@ RunRecord read_run_record(const fs::path& directory) {
   RunRecord out;
   out.file = directory / kRecordFile;
   RecordReader reader(out.file);
-  for_lines(read_if_there(out.file).value_or(""), [&](std::string_view text) {
-    RecordLine line = reader.read(text);
-    out.end.reset();
-    switch (line.kind) {
-      case LineKind::manifest:
-        out.manifest = std::move(line.tree);
-        break;
-      case LineKind::attempt:
-        out.attempts.push_back(std::move(line.row));
-        break;
-      case LineKind::setup:
-        out.setup = std::move(line.tree);
-        break;
-      case LineKind::intent:
-        out.intent = std::move(line.row);
-        break;
-      case LineKind::tap:
-        out.intent.reset();
-        out.taps.push_back(std::move(line.row));
-        break;
-      case LineKind::timing:
-        out.timings.push_back(times_of(line.row));
-        break;
-      case LineKind::objects:
-        out.objects = rows_of(*line.tree.find("objects"));
-        break;
-      case LineKind::note:
-        out.notes.push_back(std::move(line.row));
-        break;
-      case LineKind::end:
-        if (!out.attempts.empty()) out.attempts.back().add("end", line.row.text("end"));
-        out.end = std::move(line.end);
-        break;
-      case LineKind::other:
-        break;
-    }
-  });
+  for_lines(read_if_there(out.file).value_or(""), [&](std::string_view text) { add_line(reader.read(text), out); });
   return out;
 }
 

@@ -31,13 +31,9 @@ std::string grid_csv(const Candidates& candidates, const std::vector<Column>& co
   out += '\n';
   // Formatting every number would take half of the time of a short run, so texts are reused: for the axes, for columns
   // with the same map, and for cells with the same value as the previous cell.
-  const auto text_of = [](double value) {
-    std::string text;
-    append_number(text, value);
-    return text;
-  };
-  std::vector<std::string> xs;
-  for (int column = 0; column < candidates.columns; ++column) xs.push_back(text_of(candidates.starts(column, 0)) + ",");
+  std::vector<std::string> xs(static_cast<std::size_t>(candidates.columns));
+  for (int column = 0; column < candidates.columns; ++column)
+    append_number(xs[static_cast<std::size_t>(column)], candidates.starts(column, 0));
   std::vector<std::size_t> first;  // first column with the same map
   for (const Column& column : columns) {
     const auto same = [&](const Column& other) { return other.second == column.second; };
@@ -45,7 +41,8 @@ std::string grid_csv(const Candidates& candidates, const std::vector<Column>& co
   }
   std::vector<std::pair<std::size_t, std::size_t>> cells(columns.size());  // offsets in `out`, and lengths
   for (int row = 0, cell = 0; row < candidates.rows; ++row) {
-    const std::string y = text_of(candidates.starts(cell, 1));
+    std::string y = ",";
+    append_number(y, candidates.starts(cell, 1));
     for (int column = 0; column < candidates.columns; ++column, ++cell) {
       out.append(xs[static_cast<std::size_t>(column)]).append(y);
       for (std::size_t i = 0; i < columns.size(); ++i) {

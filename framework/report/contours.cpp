@@ -19,6 +19,11 @@ struct Plane {
   std::array<Vector3d, 2> axes;  ///< unit vectors along rows and along columns
   std::array<int, 2> nodes;      ///< number of nodes along each axis
   double side = 0.0;             ///< distance between neighbouring nodes, metres
+
+  /// Returns the index of a node, row by row, from its column and its row.
+  std::size_t node(int column, int row) const {
+    return static_cast<std::size_t>(row) * static_cast<std::size_t>(nodes[0]) + static_cast<std::size_t>(column);
+  }
 };
 
 /// Returns the position of the surface between two neighbouring nodes of a grid line, as a share of their distance
@@ -53,48 +58,55 @@ Ring straightened(const Ring& ring, double most) {
   return out;
 }
 
-/// Adds the section of the objects by `plane` as rings, by marching squares. Each cell that the surface crosses has an
-/// edge where the ring enters and an edge where it leaves. The ring then enters the neighbouring cell through the
-/// shared edge.
-void add_section(const Scene& scene, const Plane& plane, std::vector<Ring>& out) {
-  const auto [columns, rows] = plane.nodes;
-  const auto node_of = [width = static_cast<std::size_t>(columns)](int i, int j) {
-    return static_cast<std::size_t>(j) * width + static_cast<std::size_t>(i);
-  };
-  const std::size_t count = node_of(0, rows);
-  std::vector<bool> inside(count);
-  // crossings of the edges from each node to the next node of its row and to the next node of its column
-  std::vector<Vector3d> crossing(2 * count);
+/// Crossings of the surface with the grid lines of a plane. The lists are empty if no row meets an object.
+struct PlaneCrossings {
+  std::vector<bool> inside;      ///< one flag per node: whether it is inside an object
+  std::vector<Vector3d> points;  ///< on the edges from each node to the next node of its row and of its column, metres
+};
+
+/// Computes the crossings of the surface of the objects with the grid lines of `plane`.
+PlaneCrossings cross_plane(const Scene& scene, const Plane& plane) {
+  const std::size_t count = plane.node(0, plane.nodes[1]);
+  PlaneCrossings out{std::vector<bool>(count), std::vector<Vector3d>(2 * count)};
   bool any = false;
   for (std::size_t axis = 0; axis < 2; ++axis) {
     for (int line = 1; line + 1 < plane.nodes[1 - axis]; ++line) {
       const Vector3d begin = plane.origin + line * plane.side * plane.axes[1 - axis];
       const std::vector<Stretch> intervals = scene.intervals({begin, plane.axes[axis]});
       any = any || !intervals.empty();
-      const auto node = [&](int k) { return axis == 0 ? node_of(k, line) : node_of(line, k); };
+      const auto node = [&](int k) { return axis == 0 ? plane.node(k, line) : plane.node(line, k); };
       const auto within = [&](double at) {
         return std::any_of(intervals.begin(), intervals.end(),
                            [&](const Stretch& one) { return one.begin <= at && at <= one.end; });
       };
-      for (int k = 1; axis == 0 && k + 1 < columns; ++k) inside[node(k)] = within(k * plane.side);
+      for (int k = 1; axis == 0 && k + 1 < plane.nodes[0]; ++k) out.inside[node(k)] = within(k * plane.side);
       for (int k = 0; k + 1 < plane.nodes[axis]; ++k) {
-        if (inside[node(k)] == inside[node(k + 1)]) continue;
+        if (out.inside[node(k)] == out.inside[node(k + 1)]) continue;
         const double at = k + share_between(intervals, k * plane.side, plane.side);
-        crossing[2 * node(k) + axis] =
+        out.points[2 * node(k) + axis] =
             plane.origin + plane.side * (at * plane.axes[axis] + line * plane.axes[1 - axis]);
       }
     }
-    if (!any) return;
+    if (!any) return {};
   }
+  return out;
+}
+
+/// Adds the section of the objects by `plane` as rings, by marching squares. Each cell that the surface crosses has an
+/// edge where the ring enters and an edge where it leaves. The ring then enters the neighbouring cell through the
+/// shared edge.
+void add_section(const Scene& scene, const Plane& plane, std::vector<Ring>& out) {
+  const PlaneCrossings crossings = cross_plane(scene, plane);
+  if (crossings.inside.empty()) return;
   constexpr std::size_t kNone = static_cast<std::size_t>(-1);
-  std::vector<std::size_t> next(2 * count, kNone);
-  for (int j = 0; j + 1 < rows; ++j) {
-    for (int i = 0; i + 1 < columns; ++i) {
+  std::vector<std::size_t> next(crossings.points.size(), kNone);
+  for (int j = 0; j + 1 < plane.nodes[1]; ++j) {
+    for (int i = 0; i + 1 < plane.nodes[0]; ++i) {
       // Nodes and edges of the cell, counter-clockwise.
-      const std::array<std::size_t, 4> nodes{node_of(i, j), node_of(i + 1, j), node_of(i + 1, j + 1),
-                                             node_of(i, j + 1)};
+      const std::array<std::size_t, 4> nodes{plane.node(i, j), plane.node(i + 1, j), plane.node(i + 1, j + 1),
+                                             plane.node(i, j + 1)};
       const std::array<std::size_t, 4> sides{2 * nodes[0], 2 * nodes[1] + 1, 2 * nodes[3], 2 * nodes[0] + 1};
-      const auto within = [&](std::size_t k) { return inside[nodes[k % 4]]; };
+      const auto within = [&](std::size_t k) { return crossings.inside[nodes[k % 4]]; };
       for (std::size_t k = 0; k < 4; ++k) {
         if (!within(k) || within(k + 1)) continue;
         std::size_t back = k + 1;
@@ -107,7 +119,7 @@ void add_section(const Scene& scene, const Plane& plane, std::vector<Ring>& out)
   for (std::size_t begin = 0; begin < next.size(); ++begin) {
     Ring ring;
     for (std::size_t edge = begin; next[edge] != kNone;) {
-      ring.push_back(crossing[edge]);
+      ring.push_back(crossings.points[edge]);
       const std::size_t follows = next[edge];
       next[edge] = kNone;
       edge = follows;

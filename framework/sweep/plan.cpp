@@ -237,6 +237,16 @@ Tree written_config(const std::filesystem::path& file, const Tree& base, const s
   return out;
 }
 
+/// Returns the overrides of all jobs: the expectations, and no recorded surfaces unless `base` sets the key.
+std::vector<Override> shared_overrides(const SweepWords& words, const Tree& base) {
+  std::vector<Override> out = words.expectations;
+  if (base.find_path("log.surface") == nullptr) {
+    out.push_back({"log.surface", Tree::scalar("false")});
+    out.back().value.set_layer(kGroupLayer);
+  }
+  return out;
+}
+
 }  // namespace
 
 SweepPlan plan_sweep(Composer& composer, const PluginHost& host, const fs::path& named,
@@ -248,13 +258,7 @@ SweepPlan plan_sweep(Composer& composer, const PluginHost& host, const fs::path&
   if (description.keys().empty()) {
     throw Error(file.string(), "nothing to sweep", "give KEY=V1,V2 or a 'sweep:' in the config");
   }
-  std::vector<Override> shared = read.expectations;
-  if (base.find_path("log.surface") == nullptr) {
-    // By default, the jobs of a sweep do not record surfaces.
-    shared.push_back({"log.surface", Tree::scalar("false")});
-    shared.back().value.set_layer(kGroupLayer);
-  }
-
+  const std::vector<Override> shared = shared_overrides(read, base);
   // The config without a combination; nullopt if it is incomplete, because the sweep sets the missing keys. Other
   // errors in the config are found when the jobs are resolved.
   std::optional<ResolvedConfig> alone;

@@ -75,8 +75,7 @@ std::vector<Axis> sobol_axes(const Tree& described, ValueCount& count) {
     shift.push_back(random.bits());
   }
   boost::random::sobol sequence(axes.size());
-  // The origin is the first point of the sequence, which Boost omits.
-  std::vector<std::uint64_t> point(axes.size(), 0);
+  std::vector<std::uint64_t> point(axes.size());  // the origin is the first point, which Boost omits
   for (std::int64_t i = 0; i < samples; ++i) {
     for (std::size_t k = 0; k < axes.size(); ++k) {
       const double share = static_cast<double>((point[k] ^ shift[k]) >> 11) * 0x1.0p-53;

@@ -66,6 +66,71 @@ std::vector<Passage*> deepest(const std::vector<Passage*>& passages, double nois
   return out;
 }
 
+/// Computes how far these points are inside the surface of the residual GP, metres.
+void update_inside(const ResidualKernel& kernel, const ResidualData& known, const std::vector<Passage*>& some) {
+  ResidualKernel::Places places;
+  for (const Passage* const one : some) places.push_back(one->place);
+  const VectorXd means = known.means(kernel, places);
+  for (std::size_t i = 0; i < some.size(); ++i)
+    some[i]->inside = means(static_cast<Eigen::Index>(i)) - some[i]->distance;
+}
+
+/// Updates all points and returns those inside the surface or near it.
+std::vector<Passage*> find_close(const ResidualKernel& kernel, const ResidualData& known,
+                                 const std::vector<Passage*>& all) {
+  constexpr double kClose = 0.003;  // metres: held points elsewhere usually move the surface outwards by less
+  update_inside(kernel, known, all);
+  std::vector<Passage*> out;
+  std::copy_if(all.begin(), all.end(), std::back_inserter(out),
+               [&](const Passage* one) { return one->inside > -kClose; });
+  return out;
+}
+
+/// Fit of the residual GP to contacts and to the free points that hold the surface back. Let A = L * L' be the
+/// covariance of the contacts, noise included, and V = L^-1 * C, where C is the covariance between the contacts and the
+/// free points. Then S of Nonnegative is the covariance of the free points given the contacts, with their noise. d is
+/// the depth of the free points inside the surface given the contacts.
+class ConstrainedFit {
+ public:
+  ConstrainedFit(const ResidualKernel& kernel, const ResidualData& contacts)
+      : kernel_(kernel), contacts_(contacts), between_(contacts.weights.size(), 0) {}
+
+  /// Adds free points, all with the same noise, to `paths`. Replaces the free points of `known` by those that hold in
+  /// the new optimum.
+  void add(const std::vector<ResidualKernel::Row>& rows, FreePaths& paths, ResidualData& known) {
+    const auto lower = contacts_.lower.triangularView<Eigen::Lower>();
+    paths.points.insert(paths.points.end(), rows.begin(), rows.end());
+    const ResidualKernel::Table table = ResidualKernel::table_of(rows);
+    const auto m = static_cast<Eigen::Index>(rows.size());
+    MatrixXd with = kernel_.covariances(contacts_.table, table);
+    VectorXd inside = with.transpose() * contacts_.weights;
+    for (Eigen::Index i = 0; i < m; ++i) inside(i) -= rows[static_cast<std::size_t>(i)].target;
+    lower.solveInPlace(with);
+    between_.conservativeResize(Eigen::NoChange, between_.cols() + m);
+    between_.rightCols(m) = with;
+    MatrixXd left = kernel_.covariances(ResidualKernel::table_of(paths.points), table);
+    left.noalias() -= between_.transpose() * with;
+    left.diagonal(m - left.rows()).array() += rows.front().noise * rows.front().noise;
+    pull_.append(left, inside);
+    pull_.solve();
+    paths.redundant = pull_.redundant_taps();
+
+    VectorXd shift = between_(Eigen::all, pull_.held()) * pull_.values();
+    lower.transpose().solveInPlace(shift);
+    known.rows = contacts_.rows;
+    for (const int i : pull_.held()) known.rows.push_back(paths.points[static_cast<std::size_t>(i)]);
+    known.table = ResidualKernel::table_of(known.rows);
+    known.weights.resize(contacts_.weights.size() + pull_.values().size());
+    known.weights << contacts_.weights + shift, -pull_.values();
+  }
+
+ private:
+  const ResidualKernel& kernel_;
+  const ResidualData contacts_;
+  MatrixXd between_;  ///< V
+  Nonnegative pull_;
+};
+
 }  // namespace
 
 /// The smaller of two bounds. The first one is certain: |g(x)| <= ||g|| * sqrt(k(x, x)) in the kernel's Hilbert space,
@@ -94,44 +159,23 @@ VectorXd ResidualData::means(const ResidualKernel& kernel, const ResidualKernel:
   return out;
 }
 
-/// Let A = L * L' be the covariance of the contacts, noise included, and V = L^-1 * C, where C is the covariance
-/// between the contacts and the free points. Then S of Nonnegative is the covariance of the free points given the
-/// contacts, with their noise. d is the depth of the free points inside the surface given the contacts.
 FreePaths hold_free_paths(const ResidualKernel& kernel, const Assembly& solids,
                           const std::vector<SurfaceTouch>& touches, double contact_noise, ResidualData& known) {
   // The noise of a path is at least 0.1 mm. This keeps the problem far from singular, however many adjacent points hold
   // the surface back.
   constexpr double kLeast = 1e-4;
+  constexpr int kRounds = 16;
   const double noise = std::max(kLeast, contact_noise);
   std::vector<Passage> passages = passages_of(kernel, solids, touches, known.reach(kernel));
-  FreePaths out;
-  const ResidualData contacts = known;
-  const auto lower = contacts.lower.triangularView<Eigen::Lower>();
-  const Eigen::Index n = contacts.weights.size();
-  MatrixXd between(n, 0);  // V
-  Nonnegative pull;
-  std::vector<Passage*> all, close;
+  std::vector<Passage*> all;
   for (Passage& one : passages) all.push_back(&one);
-  const auto look_at = [&](const std::vector<Passage*>& some) {
-    ResidualKernel::Places places;
-    for (const Passage* const one : some) places.push_back(one->place);
-    const VectorXd means = known.means(kernel, places);
-    for (std::size_t i = 0; i < some.size(); ++i)
-      some[i]->inside = means(static_cast<Eigen::Index>(i)) - some[i]->distance;
-  };
-  const auto look_at_all = [&] {
-    constexpr double kClose = 0.003;  // metres: held points elsewhere usually move the surface outwards by less
-    look_at(all);
-    close.clear();
-    std::copy_if(all.begin(), all.end(), std::back_inserter(close),
-                 [&](const Passage* one) { return one->inside > -kClose; });
-  };
-  look_at_all();
-  constexpr int kRounds = 16;
+  FreePaths out;
+  ConstrainedFit fit(kernel, known);
+  std::vector<Passage*> close = find_close(kernel, known, all);
   for (int round = 0;; ++round) {
     std::vector<Passage*> more = deepest(close, noise);
     if (round == kRounds || (more.empty() && round > 0)) {
-      look_at_all();
+      close = find_close(kernel, known, all);
       more = deepest(close, noise);
     }
     if (more.empty()) return out;
@@ -144,30 +188,8 @@ FreePaths hold_free_paths(const ResidualKernel& kernel, const Assembly& solids,
       one->taken = true;
       rows.push_back({one->place, Vector3d::Zero(), one->distance, noise, true});
     }
-    out.points.insert(out.points.end(), rows.begin(), rows.end());
-    const ResidualKernel::Table table = ResidualKernel::table_of(rows);
-    const auto m = static_cast<Eigen::Index>(rows.size());
-    MatrixXd with = kernel.covariances(contacts.table, table);
-    VectorXd inside = with.transpose() * contacts.weights;
-    for (Eigen::Index i = 0; i < m; ++i) inside(i) -= rows[static_cast<std::size_t>(i)].target;
-    lower.solveInPlace(with);
-    between.conservativeResize(n, between.cols() + m);
-    between.rightCols(m) = with;
-    MatrixXd left = kernel.covariances(ResidualKernel::table_of(out.points), table);
-    left.noalias() -= between.transpose() * with;
-    left.diagonal(m - left.rows()).array() += noise * noise;
-    pull.append(left, inside);
-    pull.solve();
-    out.redundant = pull.redundant_taps();
-
-    VectorXd shift = between(Eigen::all, pull.held()) * pull.values();
-    lower.transpose().solveInPlace(shift);
-    known.rows = contacts.rows;
-    for (const int i : pull.held()) known.rows.push_back(out.points[static_cast<std::size_t>(i)]);
-    known.table = ResidualKernel::table_of(known.rows);
-    known.weights.resize(n + pull.values().size());
-    known.weights << contacts.weights + shift, -pull.values();
-    look_at(close);
+    fit.add(rows, out, known);
+    update_inside(kernel, known, close);
   }
 }
 

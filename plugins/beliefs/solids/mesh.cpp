@@ -191,15 +191,14 @@ std::vector<double> distances_at(const Crossings& grid, const Assembly& solids, 
   return out;
 }
 
-}  // namespace
-
-Crossings cross_surface(const Assembly& solids, const ResidualGp& residual_gp, double side) {
+/// Returns a grid, without crossings yet, around the part of the assembly above the desk and `margin` metres more;
+/// without nodes if there is no such part. Its cubes have side `side` or larger, metres.
+Crossings make_empty_grid(const Assembly& solids, double margin, double side) {
   constexpr double kMostNodes = 4e6;
-  const SignedSurface field(solids, residual_gp);
   Crossings out;
   Box all;
   for (const Assembly::Part& part : solids.parts) {
-    const Box one = box_of(part.primitive, field.most());
+    const Box one = box_of(part.primitive, margin);
     all.low = all.low.min(one.low);
     all.high = all.high.max(one.high);
   }
@@ -215,18 +214,61 @@ Crossings cross_surface(const Assembly& solids, const ResidualGp& residual_gp, d
     const auto axis = static_cast<Eigen::Index>(i);
     out.nodes[i] = 2 + static_cast<int>(std::ceil((all.high(axis) - out.origin(axis)) / side));
   }
+  return out;
+}
+
+/// Returns the edges that the surface crosses, in the order of their vertices. `f` has one value per node.
+std::vector<Edge> find_crossed_edges(const Crossings& grid, const std::vector<double>& f) {
+  const auto [nx, ny, nz] = grid.nodes;
+  std::vector<Edge> out;
+  for (int i = 0; i < static_cast<int>(grid.inside.size()); ++i) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if (!grid.crosses(i, axis)) continue;
+      const auto node = static_cast<std::size_t>(i);
+      const auto next = node + static_cast<std::size_t>(grid.strides()[axis]);
+      const Vector3d from = grid.origin + grid.side * Vector3d(i % nx, i / nx % ny, i / (nx * ny));
+      out.push_back({from, static_cast<Eigen::Index>(axis), f[node], f[next]});
+    }
+  }
+  return out;
+}
+
+/// Adds the triangles of a ring of vertices to `mesh`: around an additional vertex in its middle if the ring is
+/// `crowded` and has more than three vertices, else around its first vertex.
+void add_ring(const std::vector<int>& ring, bool crowded, Surface& mesh) {
+  if (!crowded || ring.size() <= 3) {
+    for (std::size_t i = 1; i + 1 < ring.size(); ++i) mesh.triangles.push_back({ring[0], ring[i], ring[i + 1]});
+    return;
+  }
+  Surface::Vertex middle{Vector3d::Zero(), Vector3d::Zero(), 0.0};
+  for (const int i : ring) {
+    const Surface::Vertex& one = mesh.vertices[static_cast<std::size_t>(i)];
+    middle.position += one.position / static_cast<double>(ring.size());
+    middle.normal += one.normal;
+    middle.standard_deviation += one.standard_deviation / static_cast<double>(ring.size());
+  }
+  middle.normal.normalize();
+  const auto hub = static_cast<int>(mesh.vertices.size());
+  mesh.vertices.push_back(middle);
+  for (std::size_t i = 0; i < ring.size(); ++i) mesh.triangles.push_back({hub, ring[i], ring[(i + 1) % ring.size()]});
+}
+
+}  // namespace
+
+Crossings cross_surface(const Assembly& solids, const ResidualGp& residual_gp, double side) {
+  const SignedSurface field(solids, residual_gp);
+  Crossings out = make_empty_grid(solids, field.most(), side);
+  if (out.nodes[0] == 0) return out;
   const auto [nx, ny, nz] = out.nodes;
   const std::array<int, 3> strides = out.strides();
-  const auto place = [&](int x, int y, int z) { return Vector3d(out.origin + side * Vector3d(x, y, z)); };
-
   // Nodes far from all primitives have distance infinity and are outside.
-  std::vector<double> f = distances_at(out, solids, field.most() + side);
+  std::vector<double> f = distances_at(out, solids, field.most() + out.side);
   out.inside.resize(f.size());
   std::vector<Vector3d> layer;
   for (int z = 0; z < nz; ++z) {
     layer.clear();
     for (int y = 0; y < ny; ++y) {
-      for (int x = 0; x < nx; ++x) layer.push_back(place(x, y, z));
+      for (int x = 0; x < nx; ++x) layer.emplace_back(out.origin + out.side * Vector3d(x, y, z));
     }
     const auto begin = f.begin() + static_cast<std::ptrdiff_t>(z) * strides[2];
     const std::vector<double> values = field.values(layer, {begin, begin + strides[2]});
@@ -240,16 +282,7 @@ Crossings cross_surface(const Assembly& solids, const ResidualGp& residual_gp, d
       }
     }
   }
-  std::vector<Edge> edges;
-  for (int i = 0; i < static_cast<int>(out.inside.size()); ++i) {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      if (!out.crosses(i, axis)) continue;
-      const auto node = static_cast<std::size_t>(i);
-      const auto next = node + static_cast<std::size_t>(strides[axis]);
-      edges.push_back({place(i % nx, i / nx % ny, i / strides[2]), static_cast<Eigen::Index>(axis), f[node], f[next]});
-    }
-  }
-  const std::vector<Vector3d> ends = roots(field, std::move(edges), side);
+  const std::vector<Vector3d> ends = roots(field, find_crossed_edges(out, f), out.side);
   const std::vector<Vector3d> normals = field.normals(ends);
   for (std::size_t i = 0; i < ends.size(); ++i) out.vertices.push_back({ends[i], normals[i], 0.0});
   return out;
@@ -261,58 +294,33 @@ Surface close_mesh(const Crossings& crossings, double desk) {
   std::array<int, 8> corners{};
   for (int i = 0; i < 8; ++i)
     corners[static_cast<std::size_t>(i)] = (i & 1) + strides[1] * (i >> 1 & 1) + strides[2] * (i >> 2);
-  std::vector<int> first;  // index of the first vertex of each node
-  first.reserve(crossings.inside.size());
+  // Index of the vertex on the edge from each node along each axis; 0 for edges without a vertex.
+  std::vector<int> vertices(3 * crossings.inside.size());
   int count = 0;
-  for (int node = 0; node < static_cast<int>(crossings.inside.size()); ++node) {
-    first.push_back(count);
-    for (std::size_t axis = 0; axis < 3; ++axis) count += crossings.crosses(node, axis) ? 1 : 0;
-  }
-  for (int z = 0; z + 1 < crossings.nodes[2]; ++z) {
-    for (int y = 0; y + 1 < crossings.nodes[1]; ++y) {
-      for (int x = 0; x + 1 < crossings.nodes[0]; ++x) {
-        const int cube = x + strides[1] * y + strides[2] * z;
-        unsigned inside = 0;
-        for (unsigned i = 0; i < 8; ++i) {
-          const int node = cube + corners[i];
-          inside |= unsigned{crossings.inside[static_cast<std::size_t>(node)]} << i;
-        }
-        if (inside == 0 || inside == 255) continue;
-        const Rings rings(inside);
-        const auto vertex_of = [&](std::size_t edge) {
-          const int node = cube + corners[edge % 8];
-          int vertex = first[static_cast<std::size_t>(node)];
-          for (std::size_t axis = 0; axis < edge / 8; ++axis) vertex += crossings.crosses(node, axis) ? 1 : 0;
-          return vertex;
-        };
-        std::array<bool, kEdges> done{};
-        for (std::size_t begin = 0; begin < kEdges; ++begin) {
-          if (rings.next[begin] < 0 || done[begin]) continue;
-          std::vector<int> ring;
-          bool crowded = false;
-          for (std::size_t edge = begin; !done[edge]; edge = static_cast<std::size_t>(rings.next[edge])) {
-            done[edge] = true;
-            crowded = crowded || rings.crowded[edge];
-            ring.push_back(vertex_of(edge));
-          }
-          if (crowded && ring.size() > 3) {
-            Surface::Vertex middle{Vector3d::Zero(), Vector3d::Zero(), 0.0};
-            for (const int i : ring) {
-              const Surface::Vertex& one = out.vertices[static_cast<std::size_t>(i)];
-              middle.position += one.position / static_cast<double>(ring.size());
-              middle.normal += one.normal;
-              middle.standard_deviation += one.standard_deviation / static_cast<double>(ring.size());
-            }
-            middle.normal.normalize();
-            const auto hub = static_cast<int>(out.vertices.size());
-            out.vertices.push_back(middle);
-            for (std::size_t i = 0; i < ring.size(); ++i)
-              out.triangles.push_back({hub, ring[i], ring[(i + 1) % ring.size()]});
-          } else {
-            for (std::size_t i = 1; i + 1 < ring.size(); ++i) out.triangles.push_back({ring[0], ring[i], ring[i + 1]});
-          }
-        }
+  for (std::size_t edge = 0; edge < vertices.size(); ++edge)
+    if (crossings.crosses(static_cast<int>(edge / 3), edge % 3)) vertices[edge] = count++;
+  // A cube has the number of its first node. The last node of a row has no cube; its number stands for eight nodes of
+  // the boundary, which are all outside.
+  for (int cube = 0; cube + corners[7] < static_cast<int>(crossings.inside.size()); ++cube) {
+    unsigned inside = 0;
+    for (unsigned i = 0; i < 8; ++i) {
+      const int node = cube + corners[i];
+      inside |= unsigned{crossings.inside[static_cast<std::size_t>(node)]} << i;
+    }
+    if (inside == 0 || inside == 255) continue;
+    const Rings rings(inside);
+    std::array<bool, kEdges> done{};
+    for (std::size_t begin = 0; begin < kEdges; ++begin) {
+      if (rings.next[begin] < 0 || done[begin]) continue;
+      std::vector<int> ring;
+      bool crowded = false;
+      for (std::size_t edge = begin; !done[edge]; edge = static_cast<std::size_t>(rings.next[edge])) {
+        done[edge] = true;
+        crowded = crowded || rings.crowded[edge];
+        const int node = cube + corners[edge % 8];
+        ring.push_back(vertices[3 * static_cast<std::size_t>(node) + edge / 8]);
       }
+      add_ring(ring, crowded, out);
     }
   }
   for (Surface::Vertex& one : out.vertices) one.position += Vector3d(0.0, 0.0, desk);

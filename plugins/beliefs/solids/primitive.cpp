@@ -124,6 +124,48 @@ struct Turned {
 
 Turned turned_by(double angle) { return {math::cos(angle), math::sin(angle)}; }
 
+/// Returns aside() of a round primitive. The line is given in the primitive's frame: a point `from` and the unit
+/// direction `along`. Searches the direction with the least value: first among twelve, then between them. It uses sums
+/// of known angles, because this search dominates the run time of runs from any side.
+double search_aside(const Primitive& primitive, const Vector3d& from, const Vector3d& along, double most) {
+  static const std::array<Turned, 12> directions = [] {
+    std::array<Turned, 12> out;
+    for (std::size_t k = 0; k < out.size(); ++k) out[k] = turned_by(kHalfTurn / 6.0 * static_cast<double>(k));
+    return out;
+  }();
+  static const std::array<Turned, 5> steps = [] {
+    std::array<Turned, 5> out;
+    double step = kHalfTurn / 12.0;
+    for (Turned& one : out) one = turned_by(step), step /= 2.0;
+    return out;
+  }();
+  const Vector3d one = along.unitOrthogonal();
+  const Vector3d other = along.cross(one);
+  const double towards_one = one.dot(from);
+  const double towards_other = other.dot(from);
+  double least = kNoHit;
+  Turned best;
+  const auto attempt = [&](const Turned& turned) {
+    const double room = primitive.reach(turned.cosine * one + turned.sine * other) - turned.cosine * towards_one -
+                        turned.sine * towards_other;
+    if (!(room < least)) return;
+    least = room;
+    best = turned;
+  };
+  for (const Turned& direction : directions) attempt(direction);
+  // Between two of these directions, the value may be smaller. The difference is at most sin 15 degrees times the
+  // extent (for thin solids), plus (1 - cos 15 degrees) times the distance between line and centre.
+  if (least - 0.3 * primitive.half.norm() > most) return most;
+  for (const Turned& step : steps) {
+    const Turned middle = best;
+    attempt(
+        {middle.cosine * step.cosine + middle.sine * step.sine, middle.sine * step.cosine - middle.cosine * step.sine});
+    attempt(
+        {middle.cosine * step.cosine - middle.sine * step.sine, middle.sine * step.cosine + middle.cosine * step.sine});
+  }
+  return std::min(least, most);
+}
+
 }  // namespace
 
 double Primitive::volume() const {
@@ -177,53 +219,14 @@ double Primitive::reach(const Vector3d& own) const {
 double Primitive::aside(const Line& line, double most) const {
   const Vector3d from = turn.transpose() * (line.origin - centre);
   const Vector3d along = turn.transpose() * line.direction;
+  if (form != Form::box) return search_aside(*this, from, along, most);
   double least = most;
-  if (form == Form::box) {
-    for (Eigen::Index i = 0; i < 3; ++i) {
-      const Vector3d across = along.cross(Vector3d::Unit(i));
-      const double length = across.norm();
-      if (length > 1e-9) least = std::min(least, (half.dot(across.cwiseAbs()) - std::abs(across.dot(from))) / length);
-    }
-    return least;
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    const Vector3d across = along.cross(Vector3d::Unit(i));
+    const double length = across.norm();
+    if (length > 1e-9) least = std::min(least, (half.dot(across.cwiseAbs()) - std::abs(across.dot(from))) / length);
   }
-  // Searches for the sideways direction with the least value: first among twelve directions, then between them. The
-  // search adds known angles, because it dominates the run time of runs from any side.
-  static const std::array<Turned, 12> directions = [] {
-    std::array<Turned, 12> out;
-    for (std::size_t k = 0; k < out.size(); ++k) out[k] = turned_by(kHalfTurn / 6.0 * static_cast<double>(k));
-    return out;
-  }();
-  static const std::array<Turned, 5> steps = [] {
-    std::array<Turned, 5> out;
-    double step = kHalfTurn / 12.0;
-    for (Turned& one : out) one = turned_by(step), step /= 2.0;
-    return out;
-  }();
-  const Vector3d one = along.unitOrthogonal();
-  const Vector3d other = along.cross(one);
-  const double towards_one = one.dot(from);
-  const double towards_other = other.dot(from);
-  Turned best;
-  const auto attempt = [&](const Turned& turned) {
-    const double room =
-        reach(turned.cosine * one + turned.sine * other) - turned.cosine * towards_one - turned.sine * towards_other;
-    if (!(room < least)) return;
-    least = room;
-    best = turned;
-  };
-  least = kNoHit;
-  for (const Turned& direction : directions) attempt(direction);
-  // Between two of these directions, the value may be smaller. The difference is at most sin 15 degrees times the
-  // extent (for thin solids), plus (1 - cos 15 degrees) times the distance between line and centre.
-  if (least - 0.3 * half.norm() > most) return most;
-  for (const Turned& step : steps) {
-    const Turned middle = best;
-    attempt(
-        {middle.cosine * step.cosine + middle.sine * step.sine, middle.sine * step.cosine - middle.cosine * step.sine});
-    attempt(
-        {middle.cosine * step.cosine - middle.sine * step.sine, middle.sine * step.cosine + middle.cosine * step.sine});
-  }
-  return std::min(least, most);
+  return least;
 }
 
 double Primitive::distance(const Vector3d& point) const {

@@ -71,6 +71,31 @@ Primitive draw(const Vector3d& near, Random& random) {
   return out;
 }
 
+/// Moves one of the two faces across an axis by a Gaussian step with standard deviation `size`, metres; the opposite
+/// face stays. A cylinder usually keeps a circular section.
+void move_face(Primitive& primitive, Eigen::Index axis, double size, Random& random) {
+  const double by = size * normal(random);
+  Vector3d grown = Vector3d::Zero();
+  grown(axis) = by / 2;
+  primitive.half += grown;
+  primitive.centre += primitive.turn * (random.uniform() < 0.5 ? Vector3d(-grown) : grown);
+  if (primitive.form == Primitive::Form::cylinder && axis < 2 && random.uniform() < 0.8)
+    primitive.half(1 - axis) = primitive.half(axis);
+}
+
+/// Rotates a primitive about the vertical, and often about a horizontal axis, too, if it neither stands nor lies.
+void rotate(Primitive& primitive, Random& random) {
+  double angle = math::exp(between(math::log(0.01), math::log(1.0), random));
+  angle *= normal(random);
+  const double tilt = std::abs(primitive.turn(2, 2));
+  if (tilt < 1.0 - 1e-9 && tilt > 1e-9 && random.uniform() < 0.7) {
+    Vector3d level = normal3(random);
+    level.z() = 0.0;
+    primitive.turn = rotation_about(level.normalized(), 0.3 * angle) * primitive.turn;
+  }
+  primitive.turn = rotation_about(Vector3d::UnitZ(), angle) * primitive.turn;
+}
+
 }  // namespace
 
 double Assembly::first_intersection(const Line& line) const {
@@ -281,9 +306,7 @@ double Solids::likelihood_with(const Assembly& one, std::size_t which, const Pri
       depth = std::max(depth, scratch_.depth[i]);
     }
     product *= std::min(of_a_lie, 1.0 + scale * (reach * reach + depth * depth));
-    if (k % kAtOnce == kAtOnce - 1) {
-      out += math::log(product), product = 1.0;
-    }
+    if (k % kAtOnce == kAtOnce - 1) out += math::log(product), product = 1.0;
     if (-0.5 * (kTails + 1.0) * out < least || product > most) {
       // The touch that rejected this proposal is evaluated first for the next proposal.
       std::rotate(order_.begin(), order_.begin() + static_cast<std::ptrdiff_t>(k),
@@ -412,14 +435,8 @@ bool Solids::change(Primitive& primitive) {
   if (kind < 0.3) return fit_to_contact(primitive);
   if (kind < 0.4) {
     primitive.centre += size * normal3(random_);
-  } else if (kind < 0.6) {  // moves one face
-    const double by = size * normal(random_);
-    Vector3d grown = Vector3d::Zero();
-    grown(axis) = by / 2;
-    primitive.half += grown;
-    primitive.centre += primitive.turn * (random_.uniform() < 0.5 ? Vector3d(-grown) : grown);
-    if (primitive.form == Primitive::Form::cylinder && axis < 2 && random_.uniform() < 0.8)
-      primitive.half(1 - axis) = primitive.half(axis);
+  } else if (kind < 0.6) {
+    move_face(primitive, axis, size, random_);
   } else if (kind < 0.7) {  // scales one axis, or both horizontal axes
     const double factor = math::exp(10.0 * size * normal(random_));
     if (random_.uniform() < 0.5 || primitive.form != Primitive::Form::box) {
@@ -428,15 +445,7 @@ bool Solids::change(Primitive& primitive) {
       primitive.half(axis) *= factor;
     }
   } else if (kind < 0.82) {
-    double angle = math::exp(between(math::log(0.01), math::log(1.0), random_));
-    angle *= normal(random_);
-    const double tilt = std::abs(primitive.turn(2, 2));
-    if (tilt < 1.0 - 1e-9 && tilt > 1e-9 && random_.uniform() < 0.7) {
-      Vector3d level = normal3(random_);
-      level.z() = 0.0;
-      primitive.turn = rotation_about(level.normalized(), 0.3 * angle) * primitive.turn;
-    }
-    primitive.turn = rotation_about(Vector3d::UnitZ(), angle) * primitive.turn;
+    rotate(primitive, random_);
   } else if (kind < 0.88) {
     const auto form = static_cast<Primitive::Form>(random_.index(3));
     if (form == primitive.form) return false;

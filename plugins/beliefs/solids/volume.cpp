@@ -58,6 +58,40 @@ Vector3d normal(const Primitive& primitive, const Vector3d& at) {
   return out.stableNormalized();
 }
 
+/// Finds the nearest primitive of an assembly.
+class NearestPrimitive {
+ public:
+  explicit NearestPrimitive(const Assembly& solids) : solids_(solids) {
+    for (const Assembly::Part& part : solids.parts) {
+      shares_.push_back(certain_share(part.primitive));
+      balls_.push_back(part.primitive.form == Primitive::Form::ellipsoid ? part.primitive.half.maxCoeff()
+                                                                         : part.primitive.half.norm());
+    }
+  }
+
+  /// Returns the nearest primitive to a point, with distances in metres.
+  Nearest find(const Vector3d& at) const {
+    Nearest known;
+    for (std::size_t i = 0; i < shares_.size(); ++i) {
+      const Primitive& primitive = solids_.parts[i].primitive;
+      const double distance = primitive.distance(at);
+      const double to_ball = (at - primitive.centre).norm() - balls_[i];
+      const double clear = std::max(shares_[i] * std::abs(distance), to_ball);
+      if (distance < 0.0) {  // a point inside a primitive has to leave that primitive
+        known.clear = known.distance < 0.0 ? std::max(known.clear, clear) : clear;
+      } else if (known.distance >= 0.0) {
+        known.clear = std::min(known.clear, clear);
+      }
+      if (distance < known.distance) known.distance = distance, known.primitive = i;
+    }
+    return known;
+  }
+
+ private:
+  const Assembly& solids_;
+  std::vector<double> shares_, balls_;  ///< see certain_share(); radii of balls around the primitives, metres
+};
+
 /// Mean of the residual GP, which changes slowly. It is evaluated once per few cubes, for each primitive and each of
 /// six directions of the normal: neighbouring primitives may have parallel surfaces with different means.
 class ResidualGpNearby {
@@ -92,33 +126,12 @@ Cubes::Held Cubes::of(const Assembly& solids, const ResidualGp& residual_gp) con
   Held out(static_cast<std::size_t>(across_) * static_cast<std::size_t>(across_) * static_cast<std::size_t>(up_));
   const double band = residual_gp.reach();
   ResidualGpNearby nearby(residual_gp, side_);
-  std::vector<double> shares, balls;
-  for (const Assembly::Part& part : solids.parts) {
-    shares.push_back(certain_share(part.primitive));
-    balls.push_back(part.primitive.form == Primitive::Form::ellipsoid ? part.primitive.half.maxCoeff()
-                                                                      : part.primitive.half.norm());
-  }
-  const auto nearest = [&](const Vector3d& at) {
-    Nearest known;
-    for (std::size_t i = 0; i < shares.size(); ++i) {
-      const Primitive& primitive = solids.parts[i].primitive;
-      const double distance = primitive.distance(at);
-      const double to_ball = (at - primitive.centre).norm() - balls[i];
-      const double clear = std::max(shares[i] * std::abs(distance), to_ball);
-      if (distance < 0.0) {  // a point inside a primitive has to leave that primitive
-        known.clear = known.distance < 0.0 ? std::max(known.clear, clear) : clear;
-      } else if (known.distance >= 0.0) {
-        known.clear = std::min(known.clear, clear);
-      }
-      if (distance < known.distance) known.distance = distance, known.primitive = i;
-    }
-    return known;
-  };
+  const NearestPrimitive nearest(solids);
   // Subdivides blocks of cubes until the surface is farther from their centre than their corners are.
   const auto fill = [&](const auto& self, int x, int y, int z, int size) -> void {
     if (x >= across_ || y >= across_ || z >= up_) return;
     const Vector3d at = lowest_ + side_ * (Vector3d(x, y, z) + Vector3d::Constant(0.5 * (size - 1)));
-    const Nearest found = nearest(at);
+    const Nearest found = nearest.find(at);
     if (size > 1 && found.clear <= band + 0.5 * std::sqrt(3.0) * (size - 1) * side_) {
       const int half = size / 2;
       for (int part = 0; part < 8; ++part)

@@ -46,10 +46,9 @@ bool resample_partially(const Particle& from, const Taps& taps, int most, Partic
   };
   std::vector<Member> rest, exchanged;
   const Target latest = taps[taps.size() - 1];
-  for (std::size_t side = 0; side < 2; ++side) {
+  for (std::size_t side = 0; side < 2; ++side)
     for (int i = 0; i < sides[side]->hypothesis.primitives.size(); ++i)
       (sides[side]->hypothesis.primitives[i].near(latest) ? exchanged : rest).push_back({side, i});
-  }
   const auto form = [&](const Member& one) { return sides[one.side]->hypothesis.primitives[one.index].form; };
   const auto row = [&](const Member& one) { return sides[one.side]->rows.row(one.index); };
   for (std::size_t done = 0; done < exchanged.size(); ++done) {
