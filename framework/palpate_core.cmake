@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
 # palpate_core: from a config to the record of its run.
-set(gp gp/candidate_grid.cpp gp/factor.cpp gp/posterior_maps.cpp gp/gaussian_process.cpp gp/engine.cpp gp/maps.cpp gp/workers.cpp gp/axis_basis.cpp gp/engine_dense.cpp gp/engine_grid.cpp gp/engine_lowrank.cpp)
+set(gp gp/candidate_grid.cpp gp/factor.cpp gp/posterior_maps.cpp gp/gaussian_process.cpp gp/engine.cpp gp/map_tiles.cpp gp/workers.cpp gp/axis_basis.cpp gp/engine_dense.cpp gp/engine_grid.cpp gp/engine_lowrank.cpp)
 # Gaussian processes over the candidates. The belief `solids` links them, too, so that their symbols are hidden.
 add_library(palpate_gp STATIC ${gp} gp/outlier_posterior.cpp gp/outlier_search.cpp gp/robust_surface.cpp gp/offset_model.cpp gp/loops.cpp)
 target_include_directories(palpate_gp PUBLIC ${CMAKE_CURRENT_SOURCE_DIR})
@@ -18,7 +18,7 @@ add_library(palpate_core STATIC
   belief/outlier_model.cpp belief/height_model.cpp belief/surface_model.cpp experiment/policy.cpp experiment/search_design.cpp belief/expected_rmse.cpp belief/metrics.cpp belief/object_errors.cpp
   experiment/check_quantities.cpp experiment/stop_rules.cpp experiment/tap_selector.cpp experiment/motion_selector.cpp experiment/run_monitor.cpp experiment/experiment.cpp
   record/row.cpp record/json.cpp record/files.cpp record/record_reader.cpp record/record_writer.cpp record/run_directory.cpp record/catalogue.cpp record/distinguishing_settings.cpp
-  record/build_info.cpp record/fields.cpp record/expectation.cpp record/mesh_ply.cpp record/summary.cpp
+  record/build_info.cpp record/fields.cpp record/expectation.cpp record/mesh_ply.cpp record/stopwatch.cpp record/surface_files.cpp
   record/recorded_run.cpp record/run.cpp record/checkpoint.cpp record/run_replay.cpp
   record/quantiles.cpp record/gate.cpp)
 target_include_directories(palpate_core PUBLIC ${CMAKE_CURRENT_SOURCE_DIR})

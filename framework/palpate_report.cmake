@@ -12,7 +12,7 @@ add_library(palpate_report STATIC
   report/page/sweep_page.cpp report/page/sweep_curves.cpp
   report/figures/figure_layout.cpp report/figures/paper_figures.cpp report/figures/curves_legend.cpp report/figures/curves_figure.cpp
   report/figures/run_figures.cpp report/figures/sweep_figures.cpp
-  report/words/words.cpp report/words/titles.cpp report/words/models.cpp report/words/explanation.cpp report/words/explain.cpp report/words/explain_approach.cpp
+  report/words/words.cpp report/words/titles.cpp report/words/models.cpp report/words/explanation.cpp report/words/explain.cpp report/words/explain_any_side.cpp
   report/mesh_export.cpp
   watch/growing_log.cpp watch/run_follower.cpp watch/sweep_follower.cpp watch/site.cpp watch/server.cpp)
 target_include_directories(palpate_report PUBLIC ${CMAKE_CURRENT_SOURCE_DIR})

@@ -11,9 +11,9 @@ list(JOIN launcher_table "" launcher_table)
 file(CONFIGURE OUTPUT launch/launcher_table.inc CONTENT "${launcher_table}")
 
 add_library(palpate_sweep STATIC
-  sweep/condition.cpp sweep/sobol.cpp sweep/description.cpp sweep/plan.cpp sweep/draft.cpp
-  sweep/sweep.cpp sweep/pooled_sweep.cpp sweep/pooled_keys.cpp sweep/pooled_values.cpp sweep/earlier_results.cpp sweep/tap_summaries.cpp
-  launch/job.cpp launch/execute_jobs.cpp launch/children.cpp launch/slurm.cpp launch/mounts.cpp
+  sweep/where_condition.cpp sweep/sobol.cpp sweep/description.cpp sweep/plan.cpp sweep/draft.cpp
+  sweep/sweep.cpp sweep/pooled_sweep.cpp sweep/pooled_keys.cpp sweep/pooled_values.cpp sweep/results_after_taps.cpp sweep/tap_summaries.cpp
+  launch/job.cpp launch/execute_jobs.cpp launch/parallel_children.cpp launch/slurm.cpp launch/mounts.cpp
   launch/launcher_table.cpp ${launcher_files})
 target_include_directories(palpate_sweep PUBLIC ${CMAKE_CURRENT_SOURCE_DIR} ${CMAKE_CURRENT_BINARY_DIR})
 target_link_libraries(palpate_sweep PUBLIC palpate_core PRIVATE palpate_warnings Boost::headers)

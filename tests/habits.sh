@@ -37,7 +37,7 @@ git grep -nE '^#include "(config|host|scene|gp|belief|experiment|record|sweep|la
 # record. record/files.cpp and record_files.cpp open what they write; the devices named here are nobody's.
 git grep -nE 'std::i?fstream|fopen *\(|(^|[ =(!])::open(at)?\(|directory_iterator|opendir *\(|LoadFile *\(' -- \
   'framework/*.[ch]pp' 'plugins/*.[ch]pp' |
-  grep -vE '^(framework/shared/reading/reading|framework/record/files|plugins/programs/record_files)\.cpp:' |
+  grep -vE '^(framework/shared/reading/read_file|framework/record/files|plugins/programs/record_files)\.cpp:' |
   grep -vE '"/dev/(null|full)"' |
   sed 's|^\([^:]*:[0-9]*\):.*|\1: opens a file or lists a folder itself, which is for shared/reading|' >"$found/reading" || true
 

@@ -3,7 +3,7 @@
 
 #include "analysis/groups.hpp"
 #include "analysis/mean_output.hpp"
-#include "sweep/earlier_results.hpp"
+#include "sweep/results_after_taps.hpp"
 
 #include <palpate/error.hpp>
 

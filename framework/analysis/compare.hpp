@@ -10,8 +10,8 @@
 #include "analysis/signed_rank.hpp"
 #include "analysis/statistics.hpp"
 #include "record/checkpoint.hpp"
-#include "sweep/condition.hpp"
 #include "sweep/sweep.hpp"
+#include "sweep/where_condition.hpp"
 
 #include <cstddef>
 #include <optional>

@@ -6,9 +6,9 @@
 #include "analysis/column.hpp"
 #include "analysis/groups.hpp"
 #include "analysis/statistics.hpp"
-#include "sweep/condition.hpp"
 #include "sweep/sweep.hpp"
 #include "sweep/tap_summaries.hpp"
+#include "sweep/where_condition.hpp"
 
 #include <map>
 #include <string>

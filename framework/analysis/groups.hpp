@@ -7,8 +7,8 @@
 #include "analysis/column.hpp"
 #include "analysis/statistics.hpp"
 #include "record/row.hpp"
-#include "sweep/condition.hpp"
 #include "sweep/sweep.hpp"
+#include "sweep/where_condition.hpp"
 
 #include <cstddef>
 #include <map>

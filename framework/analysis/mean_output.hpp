@@ -7,7 +7,7 @@
 #include "analysis/statistics.hpp"
 #include "config/display_units.hpp"
 #include "config/text_layout.hpp"
-#include "reading/reading.hpp"
+#include "reading/read_file.hpp"
 
 #include <palpate/options.hpp>
 

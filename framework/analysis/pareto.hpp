@@ -5,8 +5,8 @@
 
 #include "analysis/column.hpp"
 #include "analysis/statistics.hpp"
-#include "sweep/condition.hpp"
 #include "sweep/sweep.hpp"
+#include "sweep/where_condition.hpp"
 
 #include <cstddef>
 #include <string>

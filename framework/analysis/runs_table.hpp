@@ -5,7 +5,7 @@
 
 #include "record/distinguishing_settings.hpp"
 #include "record/row.hpp"
-#include "sweep/condition.hpp"
+#include "sweep/where_condition.hpp"
 
 #include <filesystem>
 #include <string>

@@ -3,7 +3,7 @@
 
 #include "config/catch_error.hpp"
 #include "config/hash.hpp"
-#include "reading/reading.hpp"
+#include "reading/read_file.hpp"
 #include "scene/rotation.hpp"
 
 #include <palpate/error.hpp>

@@ -3,7 +3,7 @@
 // with --needs before the other arguments, and then builds the parts that it prints.
 #pragma once
 
-#include "cli/program.hpp"
+#include "cli/command_context.hpp"
 
 #include <string>
 #include <vector>

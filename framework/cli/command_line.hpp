@@ -4,7 +4,7 @@
 #pragma once
 
 #include "cli/build_targets.hpp"
-#include "cli/program.hpp"
+#include "cli/command_context.hpp"
 #include "record/catalogue.hpp"
 
 #include <functional>

@@ -9,7 +9,7 @@
 #include "record/files.hpp"
 #include "record/json.hpp"
 #include "record/resolved.hpp"
-#include "sweep/earlier_results.hpp"
+#include "sweep/results_after_taps.hpp"
 
 #include <palpate/error.hpp>
 

@@ -4,7 +4,7 @@
 #include "cli/key_completion.hpp"
 #include "cli/usage.hpp"
 #include "config/catch_error.hpp"
-#include "reading/reading.hpp"
+#include "reading/read_file.hpp"
 #include "record/fields.hpp"
 #include "record/run_directory.hpp"
 

@@ -3,7 +3,7 @@
 // call the program each time the user presses Tab. If there is no completion, the scripts offer files.
 #pragma once
 
-#include "cli/program.hpp"
+#include "cli/command_context.hpp"
 
 #include <string>
 #include <vector>

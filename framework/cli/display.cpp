@@ -3,7 +3,7 @@
 
 #include "cli/output.hpp"
 #include "config/display_units.hpp"
-#include "reading/reading.hpp"
+#include "reading/read_file.hpp"
 #include "record/fields.hpp"
 #include "record/json.hpp"
 

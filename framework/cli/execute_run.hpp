@@ -3,7 +3,7 @@
 // resume` use it.
 #pragma once
 
-#include "cli/program.hpp"
+#include "cli/command_context.hpp"
 
 #include <filesystem>
 #include <functional>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "cli/gate.hpp"
 
+#include "cli/command_context.hpp"
 #include "cli/display.hpp"
 #include "cli/output.hpp"
-#include "cli/program.hpp"
 #include "record/files.hpp"
 
 #include <palpate/error.hpp>

@@ -4,7 +4,7 @@
 #include "config/catch_error.hpp"
 #include "config/describe.hpp"
 #include "experiment/experiment_options.hpp"
-#include "reading/reading.hpp"
+#include "reading/read_file.hpp"
 
 #include <fmt/format.h>
 

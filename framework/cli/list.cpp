@@ -5,7 +5,7 @@
 #include "cli/display.hpp"
 #include "cli/output.hpp"
 #include "config/catch_error.hpp"
-#include "reading/reading.hpp"
+#include "reading/read_file.hpp"
 #include "record/catalogue.hpp"
 #include "record/files.hpp"
 #include "record/json.hpp"

@@ -2,7 +2,7 @@
 // `palpate new` copies the starter plugin of a kind from plugins/starters, under a new name.
 #include "cli/command_line.hpp"
 #include "cli/output.hpp"
-#include "reading/reading.hpp"
+#include "reading/read_file.hpp"
 
 #include <palpate/acquisition.hpp>
 #include <palpate/error.hpp>

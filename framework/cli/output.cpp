@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "cli/output.hpp"
 
+#include "cli/command_context.hpp"
 #include "cli/display.hpp"
-#include "cli/program.hpp"
 
 #include <cerrno>
 #include <csignal>

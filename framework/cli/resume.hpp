@@ -2,7 +2,7 @@
 // Arguments of `palpate resume`.
 #pragma once
 
-#include "cli/launch_arguments.hpp"
+#include "cli/launch_options.hpp"
 
 #include <string>
 

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "cli/command_line.hpp"
-#include "cli/launch_arguments.hpp"
+#include "cli/launch_options.hpp"
 
 namespace palpate::cli {
 

@@ -5,7 +5,7 @@
 
 #include "cli/display.hpp"
 #include "config/hash.hpp"
-#include "launch/children.hpp"
+#include "launch/parallel_children.hpp"
 #include "record/catalogue.hpp"
 #include "sweep/pooled_sweep.hpp"
 

@@ -2,7 +2,7 @@
 // The output of a sweep on the terminal: progress, failures, and values of jobs.
 #pragma once
 
-#include "cli/program.hpp"
+#include "cli/command_context.hpp"
 #include "launch/execute_jobs.hpp"
 #include "sweep/sweep.hpp"
 

@@ -2,7 +2,7 @@
 // `--watch` starts a process that serves the page of a run or sweep.
 #pragma once
 
-#include "cli/program.hpp"
+#include "cli/command_context.hpp"
 #include "experiment/tap_record.hpp"
 
 #include <filesystem>

@@ -2,7 +2,7 @@
 #include "config/group_files.hpp"
 
 #include "config/keys.hpp"
-#include "reading/reading.hpp"
+#include "reading/read_file.hpp"
 
 #include <fmt/format.h>
 

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "config/tree.hpp"
-#include "reading/reading.hpp"
+#include "reading/read_file.hpp"
 
 #include <filesystem>
 #include <string>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Writes YAML: to_yaml(), and to_yaml_with_places() with source locations in comments.
 #include "config/yaml.hpp"
-#include "reading/reading.hpp"
+#include "reading/read_file.hpp"
 
 #include <yaml-cpp/yaml.h>
 

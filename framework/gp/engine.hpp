@@ -18,7 +18,7 @@
 //     P_x, P_y    coordinates of the taps' covariances along x and y in these bases
 #pragma once
 
-#include "gp/maps.hpp"
+#include "gp/map_tiles.hpp"
 
 #include <palpate/kernel.hpp>
 

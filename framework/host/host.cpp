@@ -6,7 +6,7 @@
 #include "host/builtin.hpp"
 #include "host/loaded_hash.hpp"
 #include "host/plugin_errors.hpp"
-#include "reading/reading.hpp"
+#include "reading/read_file.hpp"
 
 #include <palpate/acquisition.hpp>
 #include <palpate/backend.hpp>

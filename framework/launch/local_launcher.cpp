@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "launch/local_launcher.hpp"
 
-#include "reading/reading.hpp"
+#include "reading/read_file.hpp"
 #include "record/files.hpp"
 
 #include <palpate/error.hpp>

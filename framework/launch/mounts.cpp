@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "launch/mounts.hpp"
 
-#include "reading/reading.hpp"
+#include "reading/read_file.hpp"
 
 #include <palpate/error.hpp>
 

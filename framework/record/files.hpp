@@ -5,7 +5,7 @@
 #pragma once
 
 #include "children/child_process.hpp"
-#include "reading/reading.hpp"
+#include "reading/read_file.hpp"
 
 #include <palpate/error.hpp>
 

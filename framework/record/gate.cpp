@@ -3,7 +3,7 @@
 
 #include "config/display_units.hpp"
 #include "config/quantity.hpp"
-#include "reading/reading.hpp"
+#include "reading/read_file.hpp"
 #include "record/fields.hpp"
 #include "record/quantiles.hpp"
 

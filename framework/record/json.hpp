@@ -3,7 +3,7 @@
 #pragma once
 
 #include "config/tree.hpp"
-#include "reading/reading.hpp"
+#include "reading/read_file.hpp"
 #include "record/row.hpp"
 
 #include <cstddef>

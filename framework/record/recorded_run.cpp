@@ -4,7 +4,7 @@
 #include "config/catch_error.hpp"
 #include "config/compose.hpp"
 #include "config/yaml.hpp"
-#include "reading/reading.hpp"
+#include "reading/read_file.hpp"
 #include "record/fields.hpp"
 #include "record/files.hpp"
 

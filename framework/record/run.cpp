@@ -10,6 +10,7 @@
 #include "record/fields.hpp"
 #include "record/json.hpp"
 #include "record/run_replay.hpp"
+#include "record/surface_files.hpp"
 
 #include <fmt/format.h>
 

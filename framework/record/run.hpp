@@ -9,7 +9,7 @@
 #include "record/resolved.hpp"
 #include "record/row.hpp"
 #include "record/run_directory.hpp"
-#include "record/summary.hpp"
+#include "record/stopwatch.hpp"
 
 #include <palpate/error.hpp>
 

@@ -4,7 +4,7 @@
 #include "belief/outlier_model.hpp"
 #include "gp/candidate_grid.hpp"
 #include "record/fields.hpp"
-#include "record/summary.hpp"
+#include "record/surface_files.hpp"
 
 #include <fmt/format.h>
 

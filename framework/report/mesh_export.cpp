@@ -4,7 +4,7 @@
 #include "gp/candidate_grid.hpp"
 #include "record/fields.hpp"
 #include "record/mesh_ply.hpp"
-#include "record/summary.hpp"
+#include "record/surface_files.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -5,7 +5,7 @@
 
 #include "config/compose.hpp"
 #include "config/expand.hpp"
-#include "sweep/condition.hpp"
+#include "sweep/where_condition.hpp"
 
 #include <cstddef>
 #include <string>

@@ -2,7 +2,7 @@
 #include "sweep/pooled_sweep.hpp"
 
 #include "experiment/experiment_options.hpp"
-#include "reading/reading.hpp"
+#include "reading/read_file.hpp"
 #include "record/catalogue.hpp"
 #include "record/record_reader.hpp"
 #include "record/resolved.hpp"

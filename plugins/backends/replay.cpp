@@ -2,7 +2,7 @@
 // Backend that returns recorded taps: those of a former run, or of any table with the same columns. A dense scan of a
 // real object can serve as a benchmark of strategies.
 #include "answers/tap_result_checks.hpp"
-#include "reading/reading.hpp"
+#include "reading/read_file.hpp"
 
 #include <palpate/backend.hpp>
 #include <palpate/math.hpp>

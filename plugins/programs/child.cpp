@@ -2,7 +2,7 @@
 #include "programs/child.hpp"
 
 #include "programs/command.hpp"
-#include "reading/reading.hpp"
+#include "reading/read_file.hpp"
 
 #include <algorithm>
 #include <array>

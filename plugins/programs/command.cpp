@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "programs/command.hpp"
 
-#include "reading/reading.hpp"
+#include "reading/read_file.hpp"
 
 #include <palpate/error.hpp>
 

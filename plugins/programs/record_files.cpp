@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "programs/record_files.hpp"
 
-#include "reading/reading.hpp"
+#include "reading/read_file.hpp"
 
 #include <palpate/error.hpp>
 

@@ -16,8 +16,8 @@
 // points, brought to the value 0 by two steps of Newton's, without the part that no tool could reach.
 #include "experiment/experiment_options.hpp"
 #include "solids/camera_rays.hpp"
+#include "solids/candidate_lines.hpp"
 #include "solids/cloud.hpp"
-#include "solids/line_sampler.hpp"
 #include "support/runs.hpp"
 
 #include <CLI/CLI.hpp>

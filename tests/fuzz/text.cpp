@@ -8,8 +8,8 @@
 #include "process/protocol.hpp"
 #include "record/resolved.hpp"
 #include "support/requests.hpp"
-#include "sweep/condition.hpp"
 #include "sweep/description.hpp"
+#include "sweep/where_condition.hpp"
 
 #include <palpate/error.hpp>
 

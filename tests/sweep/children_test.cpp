@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Work distributed among child processes: each item is done once, and errors are reported.
-#include "launch/children.hpp"
+#include "launch/parallel_children.hpp"
 #include "record/files.hpp"
 #include "support/support.hpp"
 #include "support/testing.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "sweep/condition.hpp"
+#include "sweep/where_condition.hpp"
 
 #include "support/testing.hpp"
 

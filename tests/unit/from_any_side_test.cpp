@@ -2,8 +2,8 @@
 // The loop of taps from any side: what of a backend's answers it takes, what it counts, and against which truth.
 #include "experiment/experiment.hpp"
 #include "record/run_replay.hpp"
-#include "record/summary.hpp"
-#include "solids/line_sampler.hpp"
+#include "record/surface_files.hpp"
+#include "solids/candidate_lines.hpp"
 #include "solids/solids_belief.hpp"
 #include "support/runs.hpp"
 

@@ -4,7 +4,7 @@
 #include "config/catch_error.hpp"
 #include "config/describe.hpp"
 #include "config/keys.hpp"
-#include "reading/reading.hpp"
+#include "reading/read_file.hpp"
 #include "support/runs.hpp"
 #include "support/testing.hpp"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "reading/reading.hpp"
 #include "reading/npy.hpp"
 #include "reading/ply.hpp"
+#include "reading/read_file.hpp"
 
 #include "support/testing.hpp"
 

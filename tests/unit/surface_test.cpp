@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // `surface: two_part`: heights from the taps on an object alone, gated by the weight.
 #include "belief/metrics.hpp"
-#include "record/summary.hpp"
+#include "record/surface_files.hpp"
 #include "support/arrays.hpp"
 #include "support/grids.hpp"
 #include "support/runs.hpp"

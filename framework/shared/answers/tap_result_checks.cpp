@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "answers/tap_result_checks.hpp"
 
-#include "reading/reading.hpp"
+#include "reading/read_file.hpp"
 
 #include <fmt/format.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "reading/ply.hpp"
 
-#include "reading/reading.hpp"
+#include "reading/read_file.hpp"
 
 #include <algorithm>
 #include <array>

@@ -3,8 +3,8 @@
 // and of a residual GP that corrects the most probable particle.
 #pragma once
 
-#include "solids/line_sampler.hpp"
-#include "solids/line_values.hpp"
+#include "solids/candidate_lines.hpp"
+#include "solids/candidate_quantities.hpp"
 #include "solids/residual_gp.hpp"
 #include "solids/solids.hpp"
 #include "solids/solids_options.hpp"

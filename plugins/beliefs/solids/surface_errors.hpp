@@ -3,8 +3,8 @@
 // volumes.
 #pragma once
 
+#include "solids/candidate_lines.hpp"
 #include "solids/cloud.hpp"
-#include "solids/line_sampler.hpp"
 #include "solids/residual_gp.hpp"
 #include "solids/solids.hpp"
 #include "solids/volume.hpp"

@@ -3,7 +3,7 @@
 
 #include "reading/binary_number.hpp"
 #include "reading/npy.hpp"
-#include "reading/reading.hpp"
+#include "reading/read_file.hpp"
 
 #include <palpate/error.hpp>
 

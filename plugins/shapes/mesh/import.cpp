@@ -3,7 +3,7 @@
 
 #include "children/child_process.hpp"
 #include "reading/ply.hpp"
-#include "reading/reading.hpp"
+#include "reading/read_file.hpp"
 
 #include <palpate/error.hpp>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "cli/program.hpp"
+#include "cli/command_context.hpp"
 
 #include "cli/interrupt.hpp"
 #include "record/run_directory.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "sweep/earlier_results.hpp"
+#include "sweep/results_after_taps.hpp"
 
 #include "record/files.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "solids/line_sampler.hpp"
+#include "solids/candidate_lines.hpp"
 
 #include "solids/residual_gp.hpp"
 

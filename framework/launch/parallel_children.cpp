@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "launch/children.hpp"
+#include "launch/parallel_children.hpp"
 
 #include "children/child_process.hpp"
 

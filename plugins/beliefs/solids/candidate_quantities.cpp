@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "solids/line_values.hpp"
+#include "solids/candidate_quantities.hpp"
 
 #include "solids/reduction.hpp"
 

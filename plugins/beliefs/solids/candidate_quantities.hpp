@@ -2,7 +2,7 @@
 // Values of candidate lines under the current solids and residual GP.
 #pragma once
 
-#include "solids/line_sampler.hpp"
+#include "solids/candidate_lines.hpp"
 #include "solids/residual_gp.hpp"
 #include "solids/solids.hpp"
 

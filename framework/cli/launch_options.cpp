@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "cli/launch_arguments.hpp"
+#include "cli/launch_options.hpp"
 
 #include "cli/gate.hpp"
 

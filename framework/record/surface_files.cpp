@@ -1,26 +1,16 @@
 // SPDX-License-Identifier: MIT
-#include "record/summary.hpp"
+#include "record/surface_files.hpp"
 
 #include "record/mesh_ply.hpp"
 #include "record/row.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
-#include <ctime>
 #include <utility>
 #include <vector>
 
-#include <sys/resource.h>
-
 namespace palpate {
 namespace {
-
-double thread_cpu_seconds() {
-  timespec now{};
-  ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
 
 using Column = std::pair<const char*, const Eigen::VectorXd*>;
 
@@ -86,18 +76,6 @@ std::string surface_csv(Experiment& experiment, const Eigen::VectorXd& heights) 
 }
 
 }  // namespace
-
-Stopwatch::Stopwatch() : wall_(std::chrono::steady_clock::now()), cpu_(thread_cpu_seconds()) {}
-double Stopwatch::wall_seconds() const {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - wall_).count();
-}
-double Stopwatch::cpu_seconds() const { return thread_cpu_seconds() - cpu_; }
-
-std::int64_t peak_rss_bytes() {
-  rusage usage{};
-  ::getrusage(RUSAGE_SELF, &usage);
-  return std::int64_t{usage.ru_maxrss} * 1024;
-}
 
 Eigen::VectorXd true_heights(const Candidates& candidates, const Scene& scene) {
   Eigen::VectorXd out(candidates.size());

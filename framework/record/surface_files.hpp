@@ -1,31 +1,13 @@
 // SPDX-License-Identifier: MIT
-// Measurements for the summary of a run, and the files of its surface and maps. The fields of the summary are in
-// fields.cpp.
+// The files of a run that hold its surface and its maps.
 #pragma once
 
 #include "experiment/experiment.hpp"
 
-#include <chrono>
-#include <cstdint>
 #include <string>
 #include <utility>
 
 namespace palpate {
-
-/// Measures the wall time and the CPU time of the current thread since the construction of the stopwatch.
-class Stopwatch {
- public:
-  Stopwatch();
-  double wall_seconds() const;
-  double cpu_seconds() const;
-
- private:
-  std::chrono::steady_clock::time_point wall_;
-  double cpu_;
-};
-
-/// Returns the peak memory of this process.
-std::int64_t peak_rss_bytes();
 
 /// Returns name and content of the file of the reconstructed surface; call this in the stage `summary`. A height map
 /// gives surface.csv, with one row per candidate: position, mean and standard deviation of the height, object

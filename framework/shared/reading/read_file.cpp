@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "reading/reading.hpp"
+#include "reading/read_file.hpp"
 
 #include <boost/locale/utf.hpp>
 

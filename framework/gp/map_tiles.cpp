@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "gp/maps.hpp"
+#include "gp/map_tiles.hpp"
 
 namespace palpate {
 
