@@ -15,7 +15,7 @@ add_library(palpate_core STATIC
   belief/point_cloud.cpp belief/camera_view.cpp
   experiment/experiment_options.cpp record/resolved.cpp
   belief/builtin_plugins.cpp belief/height_map.cpp belief/height_map_options.cpp belief/height_models.cpp belief/contact_log.cpp belief/contact_reader.cpp belief/gp_model.cpp belief/footprint_model.cpp
-  belief/outlier_model.cpp belief/height_model.cpp belief/surface_model.cpp experiment/policy.cpp experiment/search_design.cpp belief/expected_rmse.cpp belief/metrics.cpp belief/object_errors.cpp
+  belief/outlier_model.cpp belief/height_model.cpp belief/surface_model.cpp experiment/initial_design.cpp experiment/pick_best.cpp experiment/search_design.cpp belief/expected_rmse.cpp belief/metrics.cpp belief/object_errors.cpp
   experiment/check_quantities.cpp experiment/stop_rules.cpp experiment/tap_selector.cpp experiment/motion_selector.cpp experiment/run_monitor.cpp experiment/experiment.cpp
   record/row.cpp record/json.cpp record/files.cpp record/record_reader.cpp record/record_writer.cpp record/run_directory.cpp record/catalogue.cpp record/distinguishing_settings.cpp
   record/build_info.cpp record/fields.cpp record/expectation.cpp record/mesh_ply.cpp record/stopwatch.cpp record/surface_files.cpp

@@ -3,7 +3,7 @@
 // width.
 #pragma once
 
-#include "experiment/policy.hpp"
+#include "experiment/pick_best.hpp"
 #include "gp/candidate_grid.hpp"
 
 #include <palpate/random.hpp>

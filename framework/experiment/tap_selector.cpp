@@ -2,6 +2,7 @@
 #include "experiment/tap_selector.hpp"
 
 #include "belief/outlier_model.hpp"
+#include "experiment/initial_design.hpp"
 #include "gp/finite.hpp"
 
 #include <palpate/error.hpp>

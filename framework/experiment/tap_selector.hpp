@@ -4,7 +4,8 @@
 #pragma once
 
 #include "experiment/check_quantities.hpp"
-#include "experiment/policy.hpp"
+#include "experiment/experiment_options.hpp"
+#include "experiment/pick_best.hpp"
 #include "experiment/search_design.hpp"
 #include "experiment/tap_record.hpp"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "benchmark/workload.hpp"
 
-#include "experiment/policy.hpp"
+#include "experiment/pick_best.hpp"
 #include "support/grids.hpp"
 #include "support/plugins.hpp"
 #include "support/support.hpp"

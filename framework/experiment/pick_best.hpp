@@ -1,25 +1,13 @@
 // SPDX-License-Identifier: MIT
-// Decisions that all strategies share: where the first taps go, which scored candidate is chosen, and what happens if
-// the scores do not distinguish candidates.
+// The choice among scored candidates, and whether the scores distinguish candidates.
 #pragma once
 
-#include "experiment/experiment_options.hpp"
-#include "gp/candidate_grid.hpp"
-
-#include <palpate/random.hpp>
 #include <palpate/types.hpp>
 
 #include <optional>
 #include <string>
-#include <vector>
 
 namespace palpate {
-
-/// Returns the candidates of the first taps, all different, for a design with a fixed count. The result depends only on
-/// the design, the candidates and the seed, so strategies with equal seeds begin with the same taps. There must be at
-/// least as many candidates as initial taps.
-std::vector<int> initial_design(const InitialOptions& options, const CandidateGrid& candidates, const Area& area,
-                                std::uint64_t seed);
 
 /// The outcome of a choice among scored candidates.
 struct Pick {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-#include "experiment/policy.hpp"
+#include "experiment/initial_design.hpp"
+#include "experiment/pick_best.hpp"
 #include "support/grids.hpp"
 
 #include "support/instruction_sets.hpp"
