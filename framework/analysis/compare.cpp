@@ -32,7 +32,7 @@ struct JobOutcome {
 /// effect.
 using JobOutcomes = std::map<Values, JobOutcome>;
 
-struct Collected {
+struct GroupOutcomes {
   Values values;
   JobOutcomes outcomes;
   int never = 0;  ///< number of counted jobs that never reached the goal of Comparison::occasion
@@ -70,11 +70,11 @@ std::vector<JobGroup> by_keys(std::vector<JobGroup> groups) {
 }
 
 /// Sorts the jobs into groups and counts the jobs that the condition leaves out.
-std::vector<Collected> collect(const Sweep& sweep, const std::vector<Row>& results, const Values& columns,
-                               const CompareQuery& query, const JobUnits& units, Comparison& out) {
+std::vector<GroupOutcomes> collect(const Sweep& sweep, const std::vector<Row>& results, const Values& columns,
+                                   const CompareQuery& query, const StatisticalUnits& units, Comparison& out) {
   const JobCondition where(sweep, columns, query.where);
   const Values paired = others(sweep.keys, query.by);
-  std::vector<Collected> groups;
+  std::vector<GroupOutcomes> groups;
   for (const JobGroup& group : by_keys(group_jobs(sweep, results, query.by))) {
     groups.push_back({group.values, {}, 0});
     for (const JobResult& one : group.jobs) {
@@ -98,7 +98,7 @@ std::vector<Collected> collect(const Sweep& sweep, const std::vector<Row>& resul
   return groups;
 }
 
-ComparedGroup summarise(const Collected& collected, bool only_mean) {
+ComparedGroup summarise(const GroupOutcomes& collected, bool only_mean) {
   ComparedGroup out;
   out.values = shown_values(collected.values);
   out.name = fmt::format("{}", fmt::join(out.values, ", "));
@@ -127,7 +127,7 @@ std::vector<double> sums_of(const Clusters& clusters) {
   return out;
 }
 
-ComparedPair compare_pair(const std::vector<Collected>& groups, std::size_t first, std::size_t second, bool ratio) {
+ComparedPair compare_pair(const std::vector<GroupOutcomes>& groups, std::size_t first, std::size_t second, bool ratio) {
   ComparedPair out;
   out.first = first;
   out.second = second;
@@ -259,7 +259,7 @@ void find_apart(const JobOutcomes& a, const JobOutcomes& b, std::set<std::size_t
 }
 
 /// Adds the pairs of each block: all pairs, or only the pairs with the baseline if there are many groups.
-void add_pairs(const std::vector<ComparedBlock>& blocks, const std::vector<Collected>& groups,
+void add_pairs(const std::vector<ComparedBlock>& blocks, const std::vector<GroupOutcomes>& groups,
                const CompareQuery& query, Comparison& out) {
   for (const ComparedBlock& block : blocks) {
     const bool one_baseline = query.baseline || block.groups.size() > kMostGroupsInPairs;
@@ -320,11 +320,12 @@ Comparison compare(const Sweep& sweep, const std::vector<Row>& results, const Co
   out.by = query.by;
   out.jobs = static_cast<int>(sweep.jobs.size());
   out.pairing = varying_keys(sweep, others(sweep.keys, query.by));
-  const JobUnits units(sweep, results);
+  const StatisticalUnits units(sweep, results);
   out.by_seed = units.are_seeds();
   const Values paired = others(sweep.keys, query.by);
-  const std::vector<Collected> groups = collect(sweep, results, columns, query, units, out);
-  for (const Collected& group : groups) out.groups.push_back(summarise(group, query.extent == CompareExtent::means));
+  const std::vector<GroupOutcomes> groups = collect(sweep, results, columns, query, units, out);
+  for (const GroupOutcomes& group : groups)
+    out.groups.push_back(summarise(group, query.extent == CompareExtent::means));
   check_values(out, sweep);
   std::vector<std::size_t> kept;
   for (std::size_t i = 0; i < groups.size(); ++i) {

@@ -2,7 +2,7 @@
 // Comparison of groups of a sweep's jobs: mean and spread per group, and paired differences between groups. A pair
 // consists of two jobs that have equal values of every other swept key. If seeds are swept, they are the units of
 // statistics: the bootstrap resamples all jobs of a seed together, and tests rank the means per seed. Otherwise jobs
-// are the units (JobUnits). The output is in analysis/compare_report.hpp.
+// are the units (StatisticalUnits). The output is in analysis/compare_report.hpp.
 #pragma once
 
 #include "analysis/bootstrap.hpp"
@@ -29,7 +29,7 @@ struct CompareQuery {
   std::vector<std::string> by;  ///< swept keys; jobs with equal values of these keys form a group
   std::string metric;           ///< column of results.csv
   /// condition on columns of results.csv, or null for none; other jobs are left out
-  const Condition* where = nullptr;
+  const WhereCondition* where = nullptr;
   /// Name of the group with which all others are compared: "weighted, rbf". If the scene is one of the keys, "weighted"
   /// names the group `weighted` of each scene.
   std::optional<std::string> baseline;
@@ -43,7 +43,7 @@ struct ComparedGroup {
   StatusCounts counts;
   /// number of jobs that never reached the goal of Comparison::occasion; such jobs count with their final values
   int never = 0;
-  MeanEstimate mean;  ///< mean over the jobs with a value; the clusters are the units of JobUnits
+  MeanEstimate mean;  ///< mean over the jobs with a value; the clusters are the units of StatisticalUnits
   double median = 0.0;
   double low_10 = 0.0;  ///< `low_10` and `high_90` are the 10 % and 90 % quantiles over the jobs
   double high_90 = 0.0;
@@ -56,11 +56,11 @@ struct ComparedPair {
   /// Pairs of jobs without two values, by status. A pair counts as left out if the condition excludes one of its jobs
   /// and keeps the other.
   StatusCounts lost;
-  /// mean difference; `count` is the number of pairs, and clusters are pairs with equal units (JobUnits)
+  /// mean difference; `count` is the number of pairs, and clusters are pairs with equal units (StatisticalUnits)
   MeanEstimate difference;
   /// Mean of the first group divided by mean of the second group; nullopt if not requested or not defined.
   std::optional<RatioEstimate> ratio;
-  SignedRank test;  ///< test of the means per unit (JobUnits)
+  SignedRank test;  ///< test of the means per unit (StatisticalUnits)
   /// p of the test, adjusted for all pairs of this comparison; nullopt for a single pair
   std::optional<double> p_holm;
 };
@@ -68,7 +68,7 @@ struct ComparedPair {
 struct Comparison {
   Column metric;
   std::vector<std::string> by;
-  bool by_seed = false;  ///< whether seeds are the units (JobUnits)
+  bool by_seed = false;  ///< whether seeds are the units (StatisticalUnits)
   /// swept keys that vary and are not in `by`; the two jobs of a pair have equal values of these keys
   std::vector<std::string> pairing;
   /// Keys of `pairing` for which some compared groups have no value in common. Such groups have no pairs.

@@ -25,20 +25,20 @@ std::string keys_text(const std::vector<std::string>& keys) {
 
 /// Returns the scale `groups` with enough decimals to show half the width of the narrowest interval with two
 /// significant digits.
-Scale difference_scale(const Comparison& comparison, const Scale& groups) {
+DisplayScale difference_scale(const Comparison& comparison, const DisplayScale& groups) {
   std::vector<double> widths;
   for (const ComparedPair& pair : comparison.pairs) {
     const auto& ends = pair.difference.interval;
     if (ends) widths.push_back((ends->high - ends->low) / 2.0 / groups.factor);
   }
-  Scale scale = groups;
+  DisplayScale scale = groups;
   scale.decimals = std::max(scale.decimals, readable_scale(Unit::none, widths, 2).decimals);
   return scale;
 }
 
 /// Returns a quantile as text. A whole number has no decimals, because a quantile of counts mostly equals one of the
 /// counts.
-std::string short_number(const Scale& scale, double value) {
+std::string short_number(const DisplayScale& scale, double value) {
   const double shown = value / scale.factor;
   return shown == std::round(shown) && std::abs(shown) < 1e6 ? fmt::format("{:.0f}", shown) : scale.number(value);
 }
@@ -83,7 +83,7 @@ void store_estimate(Table& table, const Comparison& comparison, const MeanEstima
   add_mean(table.last_row(), "", mean);
 }
 
-Table group_table(const Comparison& comparison, const Scale& scale, const std::string& where) {
+Table group_table(const Comparison& comparison, const DisplayScale& scale, const std::string& where) {
   Table table;
   for (std::size_t i = 0; i < comparison.groups.size(); ++i) {
     const ComparedGroup& one = comparison.groups[i];
@@ -121,13 +121,13 @@ std::string p_text(const std::optional<double>& p) {
 }
 
 /// Words that express the sign of a difference.
-struct Words {
+struct SignWords {
   const char* up;
   const char* down;
 };
 
-Words words_of(const Column& metric) {
-  return metric.better == Better::neither ? Words{"higher", "lower"} : Words{"better", "worse"};
+SignWords words_of(const Column& metric) {
+  return metric.better == Better::neither ? SignWords{"higher", "lower"} : SignWords{"better", "worse"};
 }
 
 /// Returns the number of units in which the first group has the better mean, and the number in which it has the worse
@@ -166,8 +166,8 @@ void store_test(Table& table, const ComparedPair& pair) {
   table.store("rank_biserial", test.effect);
 }
 
-Table pair_table(const Comparison& comparison, const Scale& scale, const std::string& where) {
-  const Words words = words_of(comparison.metric);
+Table pair_table(const Comparison& comparison, const DisplayScale& scale, const std::string& where) {
+  const SignWords words = words_of(comparison.metric);
   Table table;
   for (const ComparedPair& pair : comparison.pairs) {
     begin_row(table, comparison, where, "pair");
@@ -202,7 +202,7 @@ std::string contrary_note(const Comparison& comparison, const ComparedPair& pair
   const double gain = comparison.metric.better == Better::less ? -pair.difference.mean : pair.difference.mean;
   const auto [up, down] = sides(comparison, pair.test);
   if (up == down || (gain > 0.0) == (up > down)) return {};
-  const Words words = words_of(comparison.metric);
+  const SignWords words = words_of(comparison.metric);
   return fmt::format("{}: {} on average, but {} in most {}: {} of {}\n", pair_name(comparison, pair),
                      gain > 0.0 ? words.up : words.down, gain > 0.0 ? words.down : words.up,
                      comparison.by_seed ? "seeds" : "pairs", std::max(up, down), pair.difference.clusters);
@@ -299,7 +299,7 @@ std::string remarks(const Comparison& comparison) {
 }  // namespace
 
 std::string compare_tables(const Comparison& comparison) {
-  const Scale scale = readable_scale(comparison.metric.unit, comparison.means());
+  const DisplayScale scale = readable_scale(comparison.metric.unit, comparison.means());
   const std::string better = comparison.metric.better_words();
   std::string out =
       fmt::format("{} by {}{}{}\n", scale.title(comparison.metric.name), keys_text(comparison.by),
@@ -346,7 +346,7 @@ std::string compare_legend(const std::vector<Comparison>& comparisons) {
 }
 
 std::vector<Row> compare_rows(const Comparison& comparison, const std::string& where) {
-  const Scale any_scale;
+  const DisplayScale any_scale;
   std::vector<Row> rows = group_table(comparison, any_scale, where).rows();
   std::vector<Row> pairs = pair_table(comparison, any_scale, where).rows();
   std::move(pairs.begin(), pairs.end(), std::back_inserter(rows));

@@ -76,8 +76,8 @@ std::string picture_header(int width, int height, const fs::path& file, const st
 
 std::string draw_picture(const std::string& script, int width, int height, const fs::path& file, PictureUnit unit) {
   TemporaryFile picture(file);
-  Program program{{"gnuplot", "--default-settings"}};  // gnuplot must ignore the settings of the user.
-  program.own_group = false;                           // Ctrl-C must end gnuplot, too.
+  ProgramCall program{{"gnuplot", "--default-settings"}};  // gnuplot must ignore the settings of the user.
+  program.own_group = false;                               // Ctrl-C must end gnuplot, too.
   const std::string output = fs::absolute(picture.path()).string();
   const std::unique_ptr<ChildProcess> gnuplot =
       ChildProcess::start(program, picture_header(width, height, file, output, unit) + script);

@@ -86,7 +86,7 @@ ValueStatus status_of(const JobResult& job, const std::vector<double>* metric, c
 /// Makes the curve of a group. The first `scenes` values of `group.values` belong to the scene, and the others to the
 /// keys of `--by`.
 GroupCurve make_curve(const JobGroup& group, std::size_t scenes, const std::vector<TapValues>& values,
-                      const JobUnits& units, const JobCondition& where, const CurvesQuery& query) {
+                      const StatisticalUnits& units, const JobCondition& where, const CurvesQuery& query) {
   const auto split = group.values.begin() + static_cast<std::ptrdiff_t>(scenes);
   GroupCurve curve;
   curve.scene.assign(group.values.begin(), split);
@@ -192,7 +192,7 @@ GroupCurves make_group_curves(const Sweep& sweep, const std::vector<Row>& result
   for (const std::string& key : scene_keys(sweep)) {
     if (std::find(query.by.begin(), query.by.end(), key) == query.by.end()) out.scenes.push_back(key);
   }
-  const JobUnits units(sweep, results);
+  const StatisticalUnits units(sweep, results);
   out.by_seed = units.are_seeds();
   const JobCondition where(sweep, columns, query.where);
   std::vector<std::string> keys = out.scenes;

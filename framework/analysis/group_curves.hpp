@@ -35,7 +35,8 @@ struct CurvesQuery {
   std::vector<std::string> by;
   std::string metric;                  ///< column of results.csv
   std::string against = kAgainstTaps;  ///< kAgainstTaps or kAgainstTime
-  const Condition* where = nullptr;    ///< condition on columns of results.csv; other jobs are left out; null for none
+  const WhereCondition* where =
+      nullptr;  ///< condition on columns of results.csv; other jobs are left out; null for none
   /// Whether all intervals are Student's t intervals, which are fast to compute and used on pages. Otherwise
   /// mean_of_sample() computes the intervals.
   bool students = false;
@@ -43,7 +44,7 @@ struct CurvesQuery {
 
 struct CurvePoint {
   double at = 0.0;    ///< position on the axis: taps or seconds
-  MeanEstimate mean;  ///< mean over the jobs with a value at this point; the clusters are the units of JobUnits
+  MeanEstimate mean;  ///< mean over the jobs with a value at this point; the clusters are the units of StatisticalUnits
 };
 
 struct GroupCurve {
@@ -64,7 +65,7 @@ struct GroupCurves {
   /// the scene_keys() that are not in `by`; each combination of values of these keys has its own curves
   std::vector<std::string> scenes;
   std::vector<std::string> by;
-  bool by_seed = false;            ///< whether seeds are the units (JobUnits)
+  bool by_seed = false;            ///< whether seeds are the units (StatisticalUnits)
   int jobs = 0;                    ///< number of jobs of the sweep
   std::vector<GroupCurve> curves;  ///< in the order of the sweep, scene by scene
 

@@ -55,7 +55,7 @@ const CurvePoint* point_at(const GroupCurve& curve, double at) {
 
 }  // namespace
 
-Scale metric_scale(const GroupCurves& curves) {
+DisplayScale metric_scale(const GroupCurves& curves) {
   std::vector<double> means;
   for (const GroupCurve& curve : curves.curves) {
     for (const CurvePoint& point : curve.points) {
@@ -94,9 +94,9 @@ std::string curve_remarks(const GroupCurves& curves) {
 }
 
 std::string curves_table(const GroupCurves& curves) {
-  const Scale scale = metric_scale(curves);
+  const DisplayScale scale = metric_scale(curves);
   const std::vector<double> places = shown_places(curves);
-  const Scale axis = readable_scale(curves.against.unit, places);
+  const DisplayScale axis = readable_scale(curves.against.unit, places);
   const bool many_scenes = curves.scene_names().size() > 1;
   const std::string better = curves.metric.better_words();
   std::string out = fmt::format("{} against {}{}\n", scale.title(curves.metric.name), axis.title(curves.against.name),

@@ -12,10 +12,10 @@
 namespace palpate {
 
 /// Returns the unit and the number of digits for the means of all curves.
-Scale metric_scale(const GroupCurves& curves);
+DisplayScale metric_scale(const GroupCurves& curves);
 
-/// Returns the number of units of statistics (JobUnits) at the points: "12 seeds", "10 to 12 seeds". If the seed is not
-/// swept, the units are jobs.
+/// Returns the number of units of statistics (StatisticalUnits) at the points: "12 seeds", "10 to 12 seeds". If the
+/// seed is not swept, the units are jobs.
 std::string curve_units_words(const GroupCurves& curves);
 
 /// Returns a table with one line per group, followed by the remarks. A line has the mean and its interval at four

@@ -107,7 +107,7 @@ Column find_metric(const Sweep& sweep, const std::string& name, const std::vecto
   return find_column(name, columns, "--metric");
 }
 
-JobCondition::JobCondition(const Sweep& sweep, const std::vector<std::string>& columns, const Condition* where)
+JobCondition::JobCondition(const Sweep& sweep, const std::vector<std::string>& columns, const WhereCondition* where)
     : sweep_(sweep), columns_(columns), where_(where), names_(columns) {
   std::copy_if(sweep.keys.begin(), sweep.keys.end(), std::back_inserter(names_),
                [&](const std::string& key) { return !is_among(columns, key); });
@@ -115,17 +115,17 @@ JobCondition::JobCondition(const Sweep& sweep, const std::vector<std::string>& c
 
 bool JobCondition::keeps(const JobResult& job) const {
   if (where_ == nullptr) return true;
-  const Condition::Values value_in_job = [&](const std::string& name) -> std::optional<Condition::Value> {
-    if (is_among(sweep_.keys, name)) return Condition::Value{value_of(sweep_, *job.job, name)};
+  const WhereCondition::Values value_in_job = [&](const std::string& name) -> std::optional<WhereCondition::Value> {
+    if (is_among(sweep_.keys, name)) return WhereCondition::Value{value_of(sweep_, *job.job, name)};
     const std::string field = field_name(name);
     if (!is_among(columns_, name) && (field == name || !is_among(columns_, field))) return std::nullopt;
     const Scalar* value = job.row != nullptr ? result_of(*job.row, name) : nullptr;
-    return Condition::Value{value != nullptr ? written_in(field, *value) : std::string(), true};
+    return WhereCondition::Value{value != nullptr ? written_in(field, *value) : std::string(), true};
   };
   return where_->holds(value_in_job, names_);
 }
 
-JobUnits::JobUnits(const Sweep& sweep, const std::vector<Row>& results)
+StatisticalUnits::StatisticalUnits(const Sweep& sweep, const std::vector<Row>& results)
     : sweep_(sweep), are_seeds_(!varying_keys(sweep, {"seed"}).empty()) {
   if (are_seeds_) return;
   for (const std::string& name : names_of(results)) {
@@ -134,7 +134,7 @@ JobUnits::JobUnits(const Sweep& sweep, const std::vector<Row>& results)
   }
 }
 
-std::string JobUnits::of(const JobResult& job) const {
+std::string StatisticalUnits::of(const JobResult& job) const {
   if (are_seeds_) return value_of(sweep_, *job.job, "seed");
   std::string out;
   if (job.row == nullptr) return out;

@@ -64,7 +64,7 @@ Column find_metric(const Sweep& sweep, const std::string& name, const std::vecto
 class JobCondition {
  public:
   /// If `where` is null, there is no condition. All arguments must outlive the object.
-  JobCondition(const Sweep& sweep, const std::vector<std::string>& columns, const Condition* where);
+  JobCondition(const Sweep& sweep, const std::vector<std::string>& columns, const WhereCondition* where);
 
   /// Returns whether the job satisfies the condition. Throws Error for an unknown column.
   bool keeps(const JobResult& job) const;
@@ -72,7 +72,7 @@ class JobCondition {
  private:
   const Sweep& sweep_;
   const std::vector<std::string>& columns_;
-  const Condition* where_;
+  const WhereCondition* where_;
   /// names that the condition may use: the columns, then the swept keys that are not columns
   std::vector<std::string> names_;
 };
@@ -80,10 +80,10 @@ class JobCondition {
 /// The unit of statistics of each job. If several seeds are swept, seeds are the units, because jobs with the same seed
 /// share all random draws and are not independent. Otherwise jobs are the units, and copies of a run form one unit.
 /// Copies have equal values in all columns that do not depend on the machine.
-class JobUnits {
+class StatisticalUnits {
  public:
   /// `sweep` must outlive the object.
-  JobUnits(const Sweep& sweep, const std::vector<Row>& results);
+  StatisticalUnits(const Sweep& sweep, const std::vector<Row>& results);
 
   bool are_seeds() const { return are_seeds_; }
 
@@ -96,7 +96,7 @@ class JobUnits {
   std::set<std::string> compared_;  ///< columns in which copies are equal, if jobs are the units
 };
 
-/// Sorts values into clusters, one per unit of JobUnits, in the order in which units first appear.
+/// Sorts values into clusters, one per unit of StatisticalUnits, in the order in which units first appear.
 class UnitClusters {
  public:
   void add(const std::string& unit, double value);

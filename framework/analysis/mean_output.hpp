@@ -23,12 +23,12 @@ std::string with_interval(double value, const std::optional<MeanInterval>& ends,
                           const std::function<std::string(double)>& number);
 
 template <class Mean>
-std::string Scale::estimate(const Mean& mean) const {
+std::string DisplayScale::estimate(const Mean& mean) const {
   if (mean.count == 0) return "-";
   return with_interval(mean.mean, mean.interval, [&](double value) { return number(value); });
 }
 
-/// Returns the number of units of statistics (JobUnits) as text: "5 seeds", "1 job".
+/// Returns the number of units of statistics (StatisticalUnits) as text: "5 seeds", "1 job".
 std::string units_words(std::size_t units, bool seeds);
 /// Returns "3 to 5 seeds", or "5 seeds" if both numbers are 5.
 std::string units_words(std::size_t least, std::size_t most, bool seeds);

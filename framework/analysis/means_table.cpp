@@ -23,7 +23,7 @@ constexpr int kDigitsBesideIntervals = 3;
 
 /// Returns the scale of a metric over all rows. The comparisons of this metric have the indices `first`, `first` +
 /// `step`, `first` + 2 * `step` and so on.
-Scale scale_of(const std::vector<Comparison>& comparisons, std::size_t first, std::size_t step, int digits) {
+DisplayScale scale_of(const std::vector<Comparison>& comparisons, std::size_t first, std::size_t step, int digits) {
   std::vector<double> means;
   for (std::size_t i = first; i < comparisons.size(); i += step) {
     const std::vector<double> more = comparisons[i].means();
@@ -40,7 +40,7 @@ int decimals_of(const MeanInterval& ends, double factor) {
 
 /// Returns "$3.21\ [3.02, 3.40]$". LaTeX's math mode prints a hyphen as a minus sign. Mean and bounds have the same
 /// number of decimals, which depends on the width of the interval.
-std::string latex_estimate(const Scale& scale, const MeanEstimate& mean) {
+std::string latex_estimate(const DisplayScale& scale, const MeanEstimate& mean) {
   if (mean.count == 0) return "--";
   if (!mean.interval || scale.scientific || !(mean.interval->high > mean.interval->low))
     return fmt::format("${}$", scale.number(mean.mean));
@@ -58,7 +58,7 @@ bool has_taps(const Comparison& one) { return one.occasion && one.occasion->taps
 /// checkpoint, and so on.
 struct MeansLayout {
   std::size_t metrics = 0;
-  std::vector<Scale> scales;  ///< one scale per metric
+  std::vector<DisplayScale> scales;  ///< one scale per metric
 
   std::string title(const std::vector<Comparison>& comparisons, std::size_t metric) const {
     return scales[metric].title(comparisons[metric].metric.name);

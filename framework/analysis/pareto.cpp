@@ -26,7 +26,8 @@ Column make_key(const std::string& name, const std::vector<std::string>& columns
 }
 
 /// Counts the jobs of a setting and computes its means.
-Setting make_setting(const JobGroup& group, const JobUnits& units, const JobCondition& where, const Pareto& pareto) {
+Setting make_setting(const JobGroup& group, const StatisticalUnits& units, const JobCondition& where,
+                     const Pareto& pareto) {
   Setting out;
   out.values = group.values;
   out.first_job = static_cast<std::size_t>(group.jobs.front().job->index);
@@ -86,7 +87,7 @@ void number_front(Pareto& pareto) {
 }  // namespace
 
 Pareto make_pareto(const Sweep& sweep, const std::vector<Row>& results, const std::string& cost,
-                   const std::string& error, const Condition* where) {
+                   const std::string& error, const WhereCondition* where) {
   if (results.empty()) {
     throw Error(sweep.directory.string(), "no job of this sweep has ended", "run it with 'palpate resume'");
   }
@@ -99,7 +100,7 @@ Pareto make_pareto(const Sweep& sweep, const std::vector<Row>& results, const st
                 "use it with --error");
   }
   pareto.keys = setting_keys(sweep);
-  const JobUnits units(sweep, results);
+  const StatisticalUnits units(sweep, results);
   pareto.by_seed = units.are_seeds();
   const JobCondition condition(sweep, columns, where);
   const std::vector<std::string> scenes = scene_keys(sweep);

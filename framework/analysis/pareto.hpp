@@ -21,7 +21,7 @@ struct Setting {
   std::size_t first_job = 0;        ///< index in Sweep::jobs
   std::size_t scene = 0;            ///< index in Pareto::scenes
   StatusCounts counts;              ///< numbers of jobs by status; `without_value` jobs lack cost or error
-  /// mean over the done jobs with both values; the clusters are the units of JobUnits
+  /// mean over the done jobs with both values; the clusters are the units of StatisticalUnits
   MeanEstimate cost;
   MeanEstimate error;
   /// Number of the setting on the front of its scene, counted from 1 in the order of cost. It is 0 if the setting is
@@ -43,7 +43,7 @@ struct Pareto {
   std::vector<Setting> settings;
   int jobs = 0;
   int unfinished = 0;
-  bool by_seed = false;  ///< whether seeds are the units (JobUnits)
+  bool by_seed = false;  ///< whether seeds are the units (StatisticalUnits)
 
   bool more_is_better() const { return error.better == RecordField::Better::more; }
 };
@@ -52,7 +52,7 @@ struct Pareto {
 /// are left out. Throws Error with the place "command line" for a column that does not exist, holds no numbers, or
 /// cannot be a cost or an error.
 Pareto make_pareto(const Sweep& sweep, const std::vector<Row>& results, const std::string& cost,
-                   const std::string& error, const Condition* where = nullptr);
+                   const std::string& error, const WhereCondition* where = nullptr);
 
 /// A point with cost and loss, an argument of front_of().
 struct FrontPoint {

@@ -16,7 +16,7 @@ namespace {
 
 using Field = MeanEstimate Setting::*;
 
-Scale scale_of(const Pareto& pareto, const Column& key, Field field) {
+DisplayScale scale_of(const Pareto& pareto, const Column& key, Field field) {
   std::vector<double> means;
   for (const Setting& setting : pareto.settings) {
     if ((setting.*field).count > 0) means.push_back((setting.*field).mean);
@@ -36,7 +36,7 @@ std::pair<std::size_t, std::size_t> seeds_of(const Pareto& pareto) {
   return {fewest, most};
 }
 
-std::string cost_text(const Setting& setting, const Scale& scale) {
+std::string cost_text(const Setting& setting, const DisplayScale& scale) {
   const MeanEstimate& cost = setting.cost;
   if (cost.count == 0) return "-";
   const std::string half = cost.interval ? scale.number((cost.interval->high - cost.interval->low) / 2) : "-";
@@ -45,7 +45,7 @@ std::string cost_text(const Setting& setting, const Scale& scale) {
 
 /// An axis with its range in its unit.
 struct PlotAxis {
-  Scale scale;
+  DisplayScale scale;
   double low = 0.0;
   double high = 1.0;
   bool logarithmic = false;
@@ -136,8 +136,8 @@ std::string seeds_words(const Pareto& pareto) {
 }
 
 static Table settings_table(const Pareto& pareto) {
-  const Scale cost = scale_of(pareto, pareto.cost, &Setting::cost);
-  const Scale error = scale_of(pareto, pareto.error, &Setting::error);
+  const DisplayScale cost = scale_of(pareto, pareto.cost, &Setting::cost);
+  const DisplayScale error = scale_of(pareto, pareto.error, &Setting::error);
   Table table;
   for (const Setting& one : pareto.settings) {
     const std::string jobs = std::to_string(one.counts.all());
@@ -188,17 +188,17 @@ std::string pareto_table(const Pareto& pareto) {
 std::vector<Row> pareto_rows(const Pareto& pareto) { return settings_table(pareto).rows(); }
 
 std::string error_words(const Pareto& pareto, const Setting& setting) {
-  const Scale scale = scale_of(pareto, pareto.error, &Setting::error);
+  const DisplayScale scale = scale_of(pareto, pareto.error, &Setting::error);
   return pareto.error.name + " " + scale.with_unit(scale.estimate(setting.error));
 }
 
 std::string cost_words(const Pareto& pareto, const Setting& setting) {
-  const Scale scale = scale_of(pareto, pareto.cost, &Setting::cost);
+  const DisplayScale scale = scale_of(pareto, pareto.cost, &Setting::cost);
   return pareto.cost.name + " " + scale.with_unit(cost_text(setting, scale));
 }
 
 std::string bound_words(const Pareto& pareto, double bound) {
-  const Scale scale = scale_of(pareto, pareto.error, &Setting::error);
+  const DisplayScale scale = scale_of(pareto, pareto.error, &Setting::error);
   return scale.with_unit(fmt::format("{:.6g}", bound / scale.factor));
 }
 

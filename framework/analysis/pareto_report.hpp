@@ -9,8 +9,8 @@
 
 namespace palpate {
 
-/// Returns the number of units of statistics (JobUnits) per setting: "20 seeds", "18 to 20 seeds". If the seed is not
-/// swept, the units are jobs.
+/// Returns the number of units of statistics (StatisticalUnits) per setting: "20 seeds", "18 to 20 seeds". If the seed
+/// is not swept, the units are jobs.
 std::string seeds_words(const Pareto& pareto);
 
 /// Returns a table with one line per setting in readable units, the numbers on the front, and remarks.

@@ -162,7 +162,7 @@ ListedRecord list_record(const fs::path& directory) {
   return out;
 }
 
-std::vector<Row> rows_where(const std::vector<ListedRecord>& records, const Condition& where) {
+std::vector<Row> rows_where(const std::vector<ListedRecord>& records, const WhereCondition& where) {
   std::vector<std::string> known;
   for (const ListedRecord& one : records) {
     for (const Row* part : {&one.row, &one.beside}) {
@@ -175,13 +175,13 @@ std::vector<Row> rows_where(const std::vector<ListedRecord>& records, const Cond
   known.erase(std::unique(known.begin(), known.end()), known.end());
   std::vector<Row> out;
   for (const ListedRecord& one : records) {
-    const Condition::Values value_of = [&](const std::string& name) -> std::optional<Condition::Value> {
+    const WhereCondition::Values value_of = [&](const std::string& name) -> std::optional<WhereCondition::Value> {
       const Scalar* value = one.row.find(name);
       if (value == nullptr) value = one.beside.find(name);
       const bool is_result = find_summary_field(name) != nullptr;
-      if (value != nullptr) return Condition::Value{written_in(name, *value), is_result};
+      if (value != nullptr) return WhereCondition::Value{written_in(name, *value), is_result};
       if (!std::binary_search(known.begin(), known.end(), name)) return std::nullopt;
-      return Condition::Value{"", is_result};
+      return WhereCondition::Value{"", is_result};
     };
     if (where.holds(value_of, known)) out.push_back(one.row);
   }
@@ -218,7 +218,7 @@ std::string runs_table(const std::vector<Row>& rows) {
     metrics.insert(metric);
   }
   const std::string title = metrics.size() > 1 ? "RMS error" : main_error(rows);
-  const Scale scale = readable_scale(unit_of_column(main_error(rows)), errors);
+  const DisplayScale scale = readable_scale(unit_of_column(main_error(rows)), errors);
   Table table;
   for (const Row& row : rows) {
     const auto show_text = [&](const char* heading, const char* field) {

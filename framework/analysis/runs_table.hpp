@@ -37,7 +37,7 @@ void add_differences(std::vector<ListedRecord>& records);
 
 /// Returns the rows of the records that satisfy `where`. A field that only other records have is null. Throws Error for
 /// a field that no record has.
-std::vector<Row> rows_where(const std::vector<ListedRecord>& records, const Condition& where);
+std::vector<Row> rows_where(const std::vector<ListedRecord>& records, const WhereCondition& where);
 
 /// Returns a line of titles and one line per row. Returns "" if there are no rows.
 std::string runs_table(const std::vector<Row>& rows);

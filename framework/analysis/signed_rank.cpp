@@ -10,7 +10,7 @@
 namespace palpate {
 namespace {
 
-struct Difference {
+struct RankedDifference {
   double size = 0.0;
   bool higher = false;
   double rounding = 0.0;         ///< bound of the rounding error of `size`
@@ -19,7 +19,7 @@ struct Difference {
 
 /// Sets the ranks of differences, which must be sorted by size. Returns the sum of t^3 - t over all sets of equal
 /// sizes, where t is the number of elements of the set.
-double rank(std::vector<Difference>& sorted) {
+double rank(std::vector<RankedDifference>& sorted) {
   double ties = 0.0;
   for (std::size_t begin = 0; begin < sorted.size();) {
     std::size_t end = begin + 1;
@@ -37,10 +37,10 @@ double rank(std::vector<Difference>& sorted) {
 
 /// Returns the probability that a rank sum is at most `doubled_sum` / 2 if every sign is random. The distribution is
 /// built by adding one rank at a time.
-double share_at_most(const std::vector<Difference>& ranked, std::size_t doubled_sum) {
+double share_at_most(const std::vector<RankedDifference>& ranked, std::size_t doubled_sum) {
   std::vector<double> share(doubled_sum + 1, 0.0);
   share[0] = 1.0;
-  for (const Difference& one : ranked) {
+  for (const RankedDifference& one : ranked) {
     for (std::size_t sum = doubled_sum + 1; sum-- > 0;) {
       share[sum] = 0.5 * (share[sum] + (sum >= one.doubled_rank ? share[sum - one.doubled_rank] : 0.0));
     }
@@ -52,7 +52,7 @@ double share_at_most(const std::vector<Difference>& ranked, std::size_t doubled_
 
 SignedRank signed_rank_test(const std::vector<double>& first, const std::vector<double>& second) {
   SignedRank out;
-  std::vector<Difference> ranked;
+  std::vector<RankedDifference> ranked;
   for (std::size_t i = 0; i < first.size(); ++i) {
     const double difference = first[i] - second[i];
     const double rounding = kRounding * std::max(std::abs(first[i]), std::abs(second[i]));
@@ -65,11 +65,12 @@ SignedRank signed_rank_test(const std::vector<double>& first, const std::vector<
   }
   if (!first.empty()) out.p = 1.0;
   if (ranked.empty()) return out;
-  std::sort(ranked.begin(), ranked.end(), [](const Difference& a, const Difference& b) { return a.size < b.size; });
+  std::sort(ranked.begin(), ranked.end(),
+            [](const RankedDifference& a, const RankedDifference& b) { return a.size < b.size; });
   const double ties = rank(ranked);
   std::size_t higher = 0;
   std::size_t lower = 0;
-  for (const Difference& one : ranked) (one.higher ? higher : lower) += one.doubled_rank;
+  for (const RankedDifference& one : ranked) (one.higher ? higher : lower) += one.doubled_rank;
   out.rank_sum_higher = static_cast<double>(higher) / 2.0;
   out.rank_sum_lower = static_cast<double>(lower) / 2.0;
   const double sum = out.rank_sum_higher + out.rank_sum_lower;

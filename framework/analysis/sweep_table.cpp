@@ -36,7 +36,7 @@ struct SweepTableRow {
 };
 
 /// Returns "5.4 (4.5-6.3)": the median, and the 10 % and 90 % quantiles.
-std::string spread(const std::vector<double>& values, const Scale& scale) {
+std::string spread(const std::vector<double>& values, const DisplayScale& scale) {
   if (values.empty()) return "-";
   return fmt::format("{} ({}-{})", scale.number(quantile(values, 0.5)), scale.number(quantile(values, 0.1)),
                      scale.number(quantile(values, 0.9)));
@@ -85,9 +85,9 @@ Table table_of(const std::vector<SweepTableRow>& rows, const std::string& metric
     longest = std::max(longest, row.name.size());
     any_iou = any_iou || !row.iou.empty();
   }
-  const Scale error = readable_scale(unit_of_column(metric), medians, 2);
-  const Scale share{"", 1.0, 2};
-  const Scale count{"", 1.0, 0};
+  const DisplayScale error = readable_scale(unit_of_column(metric), medians, 2);
+  const DisplayScale share{"", 1.0, 2};
+  const DisplayScale count{"", 1.0, 0};
   // Long names are moved to the end of the lines, so that the numbers fit on a screen.
   constexpr std::size_t kLongest = 32;
   Table table;

@@ -6,7 +6,7 @@ namespace palpate {
 
 const std::vector<PluginManifest>& builtin_plugins() {
   static const std::vector<PluginManifest> all{
-      manifest_of<Belief, HeightMap>("height_map", "one height per position on the desk, for taps from above")};
+      manifest_of<Belief, HeightMapBelief>("height_map", "one height per position on the desk, for taps from above")};
   return all;
 }
 

@@ -20,12 +20,12 @@ namespace palpate {
 namespace {
 
 std::string bytes_of(const std::string& file) {
-  Reading reading = read_bounded(file, kMostViewBytes, Origin::user);
+  FileReading reading = read_bounded(file, kMostViewBytes, FileOrigin::user);
   if (reading) return std::move(reading.text);
-  if (reading.kind == Reading::Kind::absent)
+  if (reading.kind == FileReading::Kind::absent)
     throw Error(file, "no such file", "a relative path starts in the current folder");
-  if (reading.kind == Reading::Kind::not_regular) throw Error(file, "not a regular file", "name a PLY");
-  if (reading.kind == Reading::Kind::too_large)
+  if (reading.kind == FileReading::Kind::not_regular) throw Error(file, "not a regular file", "name a PLY");
+  if (reading.kind == FileReading::Kind::too_large)
     throw Error(file, "is too large for a view: at most 64 MiB are read", "reduce the number of points");
   throw Error(file, words_of(reading, kMostViewBytes).reason);
 }

@@ -38,7 +38,7 @@ class ContactReader {
 
  private:
   /// A contact with its measured height, before any correction.
-  struct Measured {
+  struct MeasuredContact {
     double height;  ///< above the desk, metres
     double begin;   ///< robot time before the tap, seconds
     int motion;
@@ -47,7 +47,7 @@ class ContactReader {
   const Scene& scene_;
   double seconds_ = 0.0;  ///< robot time of all taps
   std::optional<OffsetModel> offset_;
-  std::vector<Measured> measured_;  ///< only if offsets are estimated
+  std::vector<MeasuredContact> measured_;  ///< only if offsets are estimated
 };
 
 }  // namespace palpate

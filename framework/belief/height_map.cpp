@@ -27,7 +27,7 @@ void add_gp(BeliefState& out, const std::string& name, const HeightModels::Outpu
   };
   const GpSettings settings = gp ? gp.process->settings(gp.output) : GpSettings();
   const GpDiagnostics numbers = gp ? gp.process->diagnostics(gp.output) : GpDiagnostics();
-  const EngineState engine = gp ? gp.process->engine() : EngineState{"", "", 0.0};
+  const EngineReport engine = gp ? gp.process->engine() : EngineReport{"", "", 0.0};
   if (gp) {
     for (const KernelParameter& one : gp.process->kernel().parameters())
       out.add(name + ".kernel." + one.name, one.value);
@@ -90,14 +90,14 @@ ModelSet operator|(ModelSet a, const ModelSet& b) {
 
 }  // namespace
 
-HeightMap::HeightMap(const HeightMapOptions& options, const Context& context)
+HeightMapBelief::HeightMapBelief(const HeightMapOptions& options, const Context& context)
     : options_(options),
       context_(context),
       lines_(grid_from_above(context)),
       grid_(grid_of(lines_)),
       models_(options_, grid_, context) {}
 
-std::vector<Quantity> HeightMap::offers() const {
+std::vector<Quantity> HeightMapBelief::offers() const {
   using namespace quantity;
   return {{kUncertainty, "variance of the height GP at the candidate, relative to its prior, noise excluded"},
           {kMeasurementStd, "standard deviation of the height GP at the candidate, noise excluded (m)"},
@@ -112,7 +112,7 @@ std::vector<Quantity> HeightMap::offers() const {
           {kObjectSeen, "whether a camera saw an object before the first tap"}};
 }
 
-std::vector<PlannedModel> HeightMap::plan(const ReadPlan& plan) {
+std::vector<PlannedModel> HeightMapBelief::plan(const ReadPlan& plan) {
   plan_ = plan;
   if (options_.height.outlier_probability)
     plan_.readers.push_back({"belief.height.outlier_probability", {HeightModels::kOutliers}, Stage::first_tap});
@@ -131,7 +131,7 @@ std::vector<PlannedModel> HeightMap::plan(const ReadPlan& plan) {
   return out;
 }
 
-void HeightMap::begin(Stage stage) {
+void HeightMapBelief::begin(Stage stage) {
   ModelSet more;
   for (const ReadPlan::Reader& reader : plan_.readers) {
     if (reader.from == stage) more = more | models_.models_of(reader.reads, reader.at_one_candidate);
@@ -140,18 +140,18 @@ void HeightMap::begin(Stage stage) {
   models_.build(more);
 }
 
-void HeightMap::add(const TapRequest& request, const TapResult& result) {
+void HeightMapBelief::add(const TapRequest& request, const TapResult& result) {
   models_.add(request, result);
   taps_.add(request);
   models_.read_again(taps_.readings);
 }
 
-void HeightMap::update() {
+void HeightMapBelief::update() {
   models_.update();
   models_.read_again(taps_.readings);
 }
 
-QuantitySet HeightMap::available() const {
+QuantitySet HeightMapBelief::available() const {
   using namespace quantity;
   QuantitySet out;
   if (begun_.heights) out = out | QuantitySet{kUncertainty, kMeasurementStd};
@@ -162,7 +162,7 @@ QuantitySet HeightMap::available() const {
   return out;
 }
 
-const Eigen::VectorXd& HeightMap::values(std::string_view quantity) const {
+const Eigen::VectorXd& HeightMapBelief::values(std::string_view quantity) const {
   using namespace quantity;
   const Eigen::VectorXd* out = nullptr;
   if (quantity == kUncertainty) out = &models_.heights().uncertainty();
@@ -178,7 +178,7 @@ const Eigen::VectorXd& HeightMap::values(std::string_view quantity) const {
   return *out;
 }
 
-std::optional<double> HeightMap::scalar(std::string_view quantity) const {
+std::optional<double> HeightMapBelief::scalar(std::string_view quantity) const {
   if (quantity == quantity::kObjectSeen) return models_.log().prior_objects() > 0 ? 1.0 : 0.0;
   const FootprintModel* const footprint = models_.footprint();
   if (quantity == quantity::kUndiscoveredProbability)
@@ -187,24 +187,24 @@ std::optional<double> HeightMap::scalar(std::string_view quantity) const {
   return quantity == quantity::kExpectedRmse ? expected_rmse_of(maps()) : std::nullopt;
 }
 
-std::optional<double> HeightMap::expected_rmse_of(const SurfaceMaps& maps) const {
+std::optional<double> HeightMapBelief::expected_rmse_of(const SurfaceMaps& maps) const {
   if (maps.height == nullptr || (maps.two_part && maps.probability == nullptr)) return std::nullopt;
   return expected_rmse(maps, models_.height_variance(), models_.gps().surface.process, models_.log().object_contacts());
 }
 
-const HypothesisSample& HeightMap::hypotheses() const {
+const HypothesisSample& HeightMapBelief::hypotheses() const {
   static const HypothesisSample none;
   return models_.footprint() != nullptr ? models_.footprint()->hypotheses() : none;
 }
 
-SurfaceMaps HeightMap::maps(const ModelSet& models) const {
+SurfaceMaps HeightMapBelief::maps(const ModelSet& models) const {
   const bool height = models_.surface() ? models.surface_map : models.heights;
   const bool probability = models_.footprint() != nullptr ? models.footprint : models.labels;
   return {height ? &models_.height_mean() : nullptr, probability ? &models_.probability() : nullptr,
           models_.surface().has_value(), context_.scene.desk()};
 }
 
-BeliefState HeightMap::state(std::optional<Eigen::Index> candidate) const {
+BeliefState HeightMapBelief::state(std::optional<Eigen::Index> candidate) const {
   BeliefState out;
   constexpr std::size_t kUsualFields = 32;
   out.fields.reserve(kUsualFields);
@@ -236,7 +236,7 @@ BeliefState HeightMap::state(std::optional<Eigen::Index> candidate) const {
   return out;
 }
 
-void HeightMap::add_values(BeliefState& out, Eigen::Index candidate) const {
+void HeightMapBelief::add_values(BeliefState& out, Eigen::Index candidate) const {
   std::optional<double> u, w;
   if (begun_.heights) {
     u = models_.heights().uncertainty()(candidate);
@@ -255,7 +255,7 @@ void HeightMap::add_values(BeliefState& out, Eigen::Index candidate) const {
   if (begun_.footprint) out.add("p", models_.probability()(candidate));
 }
 
-void HeightMap::add_gp_states(BeliefState& out, bool summary) const {
+void HeightMapBelief::add_gp_states(BeliefState& out, bool summary) const {
   std::vector<const GaussianProcess*> counted;  // one GP may have several outputs
   const auto add = [&](const char* name, const HeightModels::Output& gp, bool is_recorded) {
     add_gp(out, name, is_recorded ? gp : HeightModels::Output(), summary);
@@ -276,7 +276,7 @@ void HeightMap::add_gp_states(BeliefState& out, bool summary) const {
   if (has_surface) add("surface_gp", gps.surface, true);
 }
 
-void HeightMap::add_calibration(BeliefState& out) const {
+void HeightMapBelief::add_calibration(BeliefState& out) const {
   const SurfaceMaps all = maps();
   Calibration calibrated;
   if (truth_ && all.height != nullptr) {
@@ -291,17 +291,17 @@ void HeightMap::add_calibration(BeliefState& out) const {
   out.add("coverage_95", calibrated.coverage_95);
 }
 
-void HeightMap::set_truth(const Scene* scene) {
+void HeightMapBelief::set_truth(const Scene* scene) {
   scene_ = scene;
   truth_.reset();
 }
 
-const Truth* HeightMap::truth() {
+const Truth* HeightMapBelief::truth() {
   if (scene_ != nullptr && !truth_) truth_ = truth_at(grid_, *scene_);
   return truth_ ? &*truth_ : nullptr;
 }
 
-std::optional<BeliefErrors> HeightMap::errors(ErrorsFor purpose) {
+std::optional<BeliefErrors> HeightMapBelief::errors(ErrorsFor purpose) {
   ModelSet models = begun_;
   if (purpose == ErrorsFor::display) {
     models = truth() != nullptr ? models_.models_of({quantity::kHeightMean, quantity::kObjectProbability})

@@ -14,11 +14,11 @@
 
 namespace palpate {
 
-class HeightMap final : public Belief {
+class HeightMapBelief final : public Belief {
  public:
   using Options = HeightMapOptions;
   /// `context` must outlive the belief. Throws Error for options that a plugin rejects.
-  HeightMap(const HeightMapOptions& options, const Context& context);
+  HeightMapBelief(const HeightMapOptions& options, const Context& context);
 
   std::vector<Quantity> offers() const override;
   std::vector<PlannedModel> plan(const ReadPlan& plan) override;

@@ -10,7 +10,7 @@ constexpr double kMostSignal = 1e12;
 
 }  // namespace
 
-void ProcessOptions::list_plugins(Fields& fields) {
+void GpOptions::list_plugins(Fields& fields) {
   fields.plugin(kernel, "kernel",
                 Field("kernel", "kernel of this GP; not given: the top-level `kernel`").inherits("kernel"));
   fields.plugin(fitting, "fitting",
@@ -68,7 +68,7 @@ void LabelOptions::list(Fields& fields) {
                   "together. The signals stay separate",
                   {}}});
   list_plugins(fields);
-  const bool shared = hyperparameters == Hyperparameters::shared;
+  const bool shared = hyperparameters == HyperparameterSource::shared;
   fields.require(
       !shared || !kernel, "kernel",
       "has no effect with belief.label.hyperparameters: shared, remove it or set belief.label.hyperparameters: own");

@@ -12,7 +12,7 @@
 namespace palpate {
 
 /// Options of one GP: heights are in metres, labels have no unit.
-struct ProcessOptions : Options {
+struct GpOptions : Options {
   double signal = 1.0;
   double noise = 1e-4;
   std::optional<PluginChoice> kernel;
@@ -30,17 +30,17 @@ struct OffsetOptions : Options {
   void list(Fields& fields) override;
 };
 
-struct HeightOptions : ProcessOptions {
+struct HeightOptions : GpOptions {
   std::optional<OffsetOptions> offset;        ///< absent: heights are used as measured
   std::optional<double> outlier_probability;  ///< absent: no contact is an outlier
   void list(Fields& fields) override;
 };
 
-struct LabelOptions : ProcessOptions {
-  enum class Hyperparameters { own, shared };
+struct LabelOptions : GpOptions {
+  enum class HyperparameterSource { own, shared };
   double prior_mean = 0.0;
   bool clip = false;
-  Hyperparameters hyperparameters = Hyperparameters::own;
+  HyperparameterSource hyperparameters = HyperparameterSource::own;
   void list(Fields& fields) override;
 };
 

@@ -56,7 +56,7 @@ HeightModels::HeightModels(const HeightMapOptions& options, const CandidateGrid&
   const HeightOptions& height = options.height;
   const LabelOptions& label = options.label;
   GpSettings settings{label.signal, label.noise, label.prior_mean};
-  if (label.hyperparameters != LabelOptions::Hyperparameters::shared) {
+  if (label.hyperparameters != LabelOptions::HyperparameterSource::shared) {
     const PluginChoice kernel = label.kernel.value_or(context.run.kernel);
     const PluginChoice fitting = label.fitting.value_or(context.run.fitting);
     labels_.emplace(GpDescription{"fitting/weight", kernel, fitting, {settings}, engine, true}, candidates, context);

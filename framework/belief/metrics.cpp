@@ -17,7 +17,7 @@ constexpr double kLogTwoPi = 1.83787706640934548356;
 constexpr double kNormal975 = 1.95996398454005423552;
 
 /// Sums of squared errors of a map, over all cells and over the cells on an object, from one pass.
-struct Misses {
+struct SquaredErrors {
   struct Sum {
     double squares = 0.0;
     Eigen::Index cells = 0;
@@ -31,7 +31,7 @@ struct Misses {
     }
   };
 
-  Misses(const Eigen::VectorXd& map, const Truth& truth) {
+  SquaredErrors(const Eigen::VectorXd& map, const Truth& truth) {
     for (Eigen::Index i = 0; i < map.size(); ++i) {
       const double error = map(i) - truth.height(i);
       all.add(error * error);
@@ -57,7 +57,7 @@ Truth truth_at(const CandidateGrid& candidates, const Scene& scene) {
 }
 
 std::optional<double> rmse(const Eigen::VectorXd& map, const Truth& truth, bool only_on_object) {
-  const Misses misses(map, truth);
+  const SquaredErrors misses(map, truth);
   return only_on_object ? misses.on_object.rms() : misses.all.rms();
 }
 
@@ -85,13 +85,13 @@ Eigen::VectorXd reconstruction(const SurfaceMaps& maps) {
 Errors errors_of(const SurfaceMaps& maps, const Truth& truth) {
   Errors out;
   if (maps.height != nullptr) {
-    const Misses of_height(*maps.height, truth);
+    const SquaredErrors of_height(*maps.height, truth);
     out.rmse_height = of_height.on_object.rms();
     if (!maps.two_part) {  // the mean height is the reconstruction
       out.rmse = of_height.all.rms();
       out.rmse_object = out.rmse_height;
     } else if (maps.probability != nullptr) {
-      const Misses of_surface(reconstruction(maps), truth);
+      const SquaredErrors of_surface(reconstruction(maps), truth);
       out.rmse = of_surface.all.rms();
       out.rmse_object = of_surface.on_object.rms();
     }

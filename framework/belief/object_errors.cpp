@@ -8,9 +8,9 @@ namespace palpate {
 namespace {
 
 /// The cells of a grid and their neighbours.
-class Grid {
+class CellGrid {
  public:
-  explicit Grid(const CandidateGrid& candidates) : columns_(candidates.columns), rows_(candidates.rows) {}
+  explicit CellGrid(const CandidateGrid& candidates) : columns_(candidates.columns), rows_(candidates.rows) {}
 
   int size() const { return columns_ * rows_; }
 
@@ -39,7 +39,7 @@ struct Components {
 };
 
 template <class In>
-Components components(const Grid& grid, const In& in) {
+Components components(const CellGrid& grid, const In& in) {
   Components out{std::vector<int>(static_cast<std::size_t>(grid.size()), -1), 0};
   std::vector<int> open;
   const auto take = [&](int cell) {
@@ -63,9 +63,9 @@ Components components(const Grid& grid, const In& in) {
 /// Returns whether `part` cells are at least a fifth of `whole`.
 bool has_a_fifth(int part, int whole) { return part > 0 && 5 * part >= whole; }
 
-class ObjectsSeen {
+class ObjectComparison {
  public:
-  ObjectsSeen(const SurfaceMaps& maps, const Truth& truth, const CandidateGrid& candidates)
+  ObjectComparison(const SurfaceMaps& maps, const Truth& truth, const CandidateGrid& candidates)
       : maps_(maps), truth_(truth), candidates_(candidates), grid_(candidates) {
     out_.resize(static_cast<std::size_t>(truth.objects));
     for (int cell = 0; cell < grid_.size(); ++cell) {
@@ -165,14 +165,14 @@ class ObjectsSeen {
   const SurfaceMaps& maps_;
   const Truth& truth_;
   const CandidateGrid& candidates_;
-  Grid grid_;
+  CellGrid grid_;
   std::vector<ObjectErrors> out_;
 };
 
 }  // namespace
 
 std::vector<ObjectErrors> object_errors(const SurfaceMaps& maps, const Truth& truth, const CandidateGrid& candidates) {
-  return ObjectsSeen(maps, truth, candidates).take();
+  return ObjectComparison(maps, truth, candidates).take();
 }
 
 }  // namespace palpate

@@ -29,9 +29,9 @@ struct Header {
   std::size_t length = 0;                       ///< bytes of the header, its last line end included
 };
 
-class Reader {
+class PointCloudReader {
  public:
-  Reader(const std::string& bytes, const std::string& file) : bytes_(bytes), file_(file) {}
+  PointCloudReader(const std::string& bytes, const std::string& file) : bytes_(bytes), file_(file) {}
 
   PointCloud read() {
     const Header header = read_header();
@@ -172,7 +172,7 @@ class Reader {
 }  // namespace
 
 PointCloud read_points(const std::string& bytes, const std::string& file) {
-  return Reader(plain_ply(bytes, {"vertex"}), file).read();
+  return PointCloudReader(plain_ply(bytes, {"vertex"}), file).read();
 }
 
 }  // namespace palpate

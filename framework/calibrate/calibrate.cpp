@@ -52,7 +52,7 @@ Tree with_rate(const char* effect) {
   return out;
 }
 
-std::string words(const Estimated& one, double unit, const char* name) {
+std::string words(const IntervalEstimate& one, double unit, const char* name) {
   return fmt::format("{:.3g} [{:.3g}, {:.3g}] {}", one.value / unit, one.low / unit, one.high / unit, name);
 }
 
@@ -73,14 +73,14 @@ struct CalibrationRun {
 };
 
 /// Counts over all taps of all runs.
-struct Sums {
+struct TapCounts {
   double taps = 0.0, failed = 0.0, contacts = 0.0;
   double on_desk = 0.0;
 };
 
-class Calibrated {
+class EffectsCalibration {
  public:
-  Calibrated(const RunEnvironment& environment, const std::vector<RecordedRun>& recordings) {
+  EffectsCalibration(const RunEnvironment& environment, const std::vector<RecordedRun>& recordings) {
     for (const RecordedRun& recording : recordings) {
       runs_.emplace_back(environment, recording);
       add(runs_.back());
@@ -113,7 +113,7 @@ class Calibrated {
                      fit_.drift ? "drift " + words(*fit_.drift, kMillimetrePerMinute, "mm/min")
                                 : std::string("the drift cannot be estimated")));
     const auto less = [&](double noise) { return std::sqrt(std::max(0.0, noise * noise - simulated_variance_)); };
-    const Estimated vertical{less(fit_.noise.value), less(fit_.noise.low), less(fit_.noise.high)};
+    const IntervalEstimate vertical{less(fit_.noise.value), less(fit_.noise.low), less(fit_.noise.high)};
     line("pose_noise",
          fmt::format("{{lateral: {:.3g} mm, vertical: {:.3g} mm}}",
                      (fit_.lateral ? fit_.lateral->value : 0.002) / kMillimetre, vertical.value / kMillimetre),
@@ -121,7 +121,7 @@ class Calibrated {
                      fit_.lateral ? words(*fit_.lateral, kMillimetre, "mm")
                                   : std::string("is assumed, because no tap was beside a step"),
                      words(vertical, kMillimetre, "mm")));
-    const Estimated failed = share_of(sums_.failed, sums_.taps);
+    const IntervalEstimate failed = share_of(sums_.failed, sums_.taps);
     rate(line, "missed_contacts", failed, fmt::format("{:g} of {:g} taps made no contact", sums_.failed, sums_.taps),
          [](const SimulatedRerun::Result& made) { return made.failed; });
     rate(line, "false_contacts", fit_.false_share,
@@ -189,8 +189,9 @@ class Calibrated {
 
   /// Adds a line with the rate at which the simulated taps show the same share of events as the recorded taps (`seen`).
   /// The simulated share is linear in the rate, so simulations with the rates 0 and 1 determine the rate.
-  template <class Line, class Shown>
-  void rate(const Line& line, const char* effect, const Estimated& seen, const std::string& what, const Shown& shown) {
+  template <class Line, class ShownShare>
+  void rate(const Line& line, const char* effect, const IntervalEstimate& seen, const std::string& what,
+            const ShownShare& shown) {
     double none = 0.0;
     double all = 0.0;
     for (const CalibrationRun& pair : runs_) {
@@ -202,7 +203,7 @@ class Calibrated {
                   what + "; the rate is assumed, because these motions hardly reveal it");
     }
     const auto rate_of = [&](double share) { return std::clamp((share - none) / (all - none), 0.0, 1.0); };
-    const Estimated out{rate_of(seen.value), rate_of(seen.low), rate_of(seen.high)};
+    const IntervalEstimate out{rate_of(seen.value), rate_of(seen.low), rate_of(seen.high)};
     line(effect, fmt::format("{{probability: {:.3g}}}", out.value),
          fmt::format("{}; {}, of which these motions reveal {:.0f} %", what, words(out, 1.0, "per tap"),
                      100.0 * (all - none)));
@@ -245,7 +246,7 @@ class Calibrated {
 
   std::vector<CalibrationRun> runs_;
   std::vector<KnownContact> contacts_;
-  Sums sums_;
+  TapCounts sums_;
   ContactFit fit_;
   double simulated_variance_ = 0.0;  ///< variance of a tap's error due to the assumed effects
 };
@@ -253,7 +254,7 @@ class Calibrated {
 }  // namespace
 
 std::string calibrate(const RunEnvironment& environment, const std::vector<RecordedRun>& recordings) {
-  return Calibrated(environment, recordings).file();
+  return EffectsCalibration(environment, recordings).file();
 }
 
 }  // namespace palpate

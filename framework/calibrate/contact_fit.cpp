@@ -145,7 +145,7 @@ double beyond_surface(const KnownContact& contact, double offset) {
   return height - std::clamp(height, lowest, highest);
 }
 
-Estimated share_of(double count, double all) {
+IntervalEstimate share_of(double count, double all) {
   const double z2 = kNormal975 * kNormal975;
   const double share = count / all;
   const double middle = (share + z2 / (2.0 * all)) / (1.0 + z2 / all);
@@ -156,11 +156,11 @@ Estimated share_of(double count, double all) {
 ContactFit fit_contacts(const std::vector<KnownContact>& contacts, double range) {
   ContactFit out;
   for (const KnownContact& one : contacts) out.mean_elapsed += one.elapsed / static_cast<double>(contacts.size());
-  struct Fitted {
+  struct LateralFit {
     double lateral;
     FitState numbers;
   };
-  std::vector<Fitted> profile;
+  std::vector<LateralFit> profile;
   for (double lateral = 0.0; lateral <= kFarthestPlace; lateral += kFinestPlace) {
     const ExpectationMaximisation fit(contacts, heights_around(contacts, lateral), out.mean_elapsed, range);
     FitState steady = fit.run(false);
@@ -168,23 +168,23 @@ ContactFit fit_contacts(const std::vector<KnownContact>& contacts, double range)
     const bool drifts = 2.0 * (drifting.log_likelihood - steady.log_likelihood) > kChiSquare95;
     profile.push_back({lateral, drifts ? drifting : steady});
   }
-  const auto better = [](const Fitted& a, const Fitted& b) {
+  const auto better = [](const LateralFit& a, const LateralFit& b) {
     return a.numbers.log_likelihood < b.numbers.log_likelihood;
   };
-  const Fitted& best = *std::max_element(profile.begin(), profile.end(), better);
+  const LateralFit& best = *std::max_element(profile.begin(), profile.end(), better);
   const FitState& numbers = best.numbers;
   const double half = kNormal975 * numbers.noise / std::sqrt(numbers.true_contacts);
   out.offset = {numbers.offset, numbers.offset - half, numbers.offset + half};
   if (numbers.drift != 0.0) {
     const double spread = kNormal975 * numbers.noise / std::sqrt(numbers.time_squares);
-    out.drift = Estimated{numbers.drift, numbers.drift - spread, numbers.drift + spread};
+    out.drift = IntervalEstimate{numbers.drift, numbers.drift - spread, numbers.drift + spread};
   }
   const double factor = std::exp(kNormal975 / std::sqrt(2.0 * numbers.true_contacts));
   out.noise = {numbers.noise, numbers.noise / factor, numbers.noise * factor};
   const auto all = static_cast<double>(contacts.size());
   out.false_share = share_of(all - numbers.true_contacts, all);
-  Estimated lateral{best.lateral, kFarthestPlace, 0.0};
-  for (const Fitted& one : profile) {
+  IntervalEstimate lateral{best.lateral, kFarthestPlace, 0.0};
+  for (const LateralFit& one : profile) {
     if (2.0 * (numbers.log_likelihood - one.numbers.log_likelihood) > kChiSquare95) continue;
     lateral.low = std::min(lateral.low, one.lateral);
     lateral.high = std::max(lateral.high, one.lateral);

@@ -18,7 +18,7 @@
 namespace palpate {
 
 /// A value with its 95 % interval.
-struct Estimated {
+struct IntervalEstimate {
   double value = 0.0, low = 0.0, high = 0.0;
 };
 
@@ -32,13 +32,13 @@ struct KnownContact {
 
 struct ContactFit {
   /// offset of the measured heights, metres; with a drift, the offset at the mean time of the contacts
-  Estimated offset;
-  std::optional<Estimated> drift;  ///< metres per second; nullopt if not significantly different from 0
-  Estimated noise;                 ///< standard deviation of the noise of a measured height, metres
+  IntervalEstimate offset;
+  std::optional<IntervalEstimate> drift;  ///< metres per second; nullopt if not significantly different from 0
+  IntervalEstimate noise;                 ///< standard deviation of the noise of a measured height, metres
   /// Standard deviation of the lateral error along x and along y, metres; nullopt if the taps do not determine it.
-  std::optional<Estimated> lateral;
-  Estimated false_share;      ///< share of false contacts among all contacts
-  double mean_elapsed = 0.0;  ///< mean time of the contacts, seconds
+  std::optional<IntervalEstimate> lateral;
+  IntervalEstimate false_share;  ///< share of false contacts among all contacts
+  double mean_elapsed = 0.0;     ///< mean time of the contacts, seconds
 };
 
 /// Fits at least 3 contacts. False contacts are distributed uniformly over `range` metres of height.
@@ -50,6 +50,6 @@ ContactFit fit_contacts(const std::vector<KnownContact>& contacts, double range)
 double beyond_surface(const KnownContact& contact, double offset);
 
 /// Returns the share `count` / `all` with Wilson's interval (1927). Both numbers may be fractional.
-Estimated share_of(double count, double all);
+IntervalEstimate share_of(double count, double all);
 
 }  // namespace palpate

@@ -9,7 +9,7 @@
 
 namespace palpate::cli {
 
-void Needs::config(const std::string& file, const std::vector<std::string>& overrides, bool sweeps) {
+void NeededParts::config(const std::string& file, const std::vector<std::string>& overrides, bool sweeps) {
   catch_error([&] {
     std::vector<Override> read;
     for (const std::string& text : overrides) read.push_back(parse_override(text));
@@ -19,18 +19,18 @@ void Needs::config(const std::string& file, const std::vector<std::string>& over
   });
 }
 
-void Needs::record(const std::string& directory) {
+void NeededParts::record(const std::string& directory) {
   if (is_sweep(directory)) return everything();
   catch_error([&] { resolve_experiment(read_run_config(directory), *this); });
 }
 
-void Needs::listing(const std::string& what) {
+void NeededParts::listing(const std::string& what) {
   for (const auto& [kind, name] : plugins_of_build(program_.installation.plugins)) {
     if (what.empty() || what == kind || what == fmt::format("{}/{}", kind, name)) plugins_.emplace(kind, name);
   }
 }
 
-void Needs::print() const {
+void NeededParts::print() const {
   const auto known = plugins_of_build(program_.installation.plugins);
   if (known.empty()) return;
   if (whole_) print_out("palpate_whole\n");
@@ -40,12 +40,12 @@ void Needs::print() const {
   }
 }
 
-bool Needs::is_silent(const std::string& kind, const std::string& name) const {
+bool NeededParts::is_silent(const std::string& kind, const std::string& name) const {
   plugins_.emplace(kind, name);
   return !program_.host.has(kind, name);
 }
 
-void Needs::describe(const std::string& kind, const std::string& name, Fields& fields) const {
+void NeededParts::describe(const std::string& kind, const std::string& name, Fields& fields) const {
   program_.host.describe(kind, name, fields);
 }
 

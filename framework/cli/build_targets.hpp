@@ -13,9 +13,9 @@ namespace palpate::cli {
 /// Collects the parts that a command needs. As a PluginSource, this object records each plugin whose options are read.
 /// The functions do not throw, because the command itself reports an invalid config. Plugins that are named in the
 /// options of another plugin become known only after that plugin is built.
-class Needs final : public PluginSource {
+class NeededParts final : public PluginSource {
  public:
-  explicit Needs(Program& program) : program_(program) {}
+  explicit NeededParts(CommandEnvironment& program) : program_(program) {}
 
   /// Adds palpate-whole.
   void whole() { whole_ = true; }
@@ -45,7 +45,7 @@ class Needs final : public PluginSource {
   void describe(const std::string& kind, const std::string& name, Fields& fields) const override;
 
  private:
-  Program& program_;
+  CommandEnvironment& program_;
   bool whole_ = false;
   bool every_plugin_ = false;
   mutable PluginNames plugins_;

@@ -6,7 +6,7 @@
 
 namespace palpate::cli {
 
-int calibrate(Program& program, const CalibrateArguments& arguments) {
+int calibrate(CommandEnvironment& program, const CalibrateArguments& arguments) {
   std::vector<RecordedRun> recordings;
   for (const std::string& directory : arguments.runs) {
     check_one_run(directory);

@@ -16,7 +16,7 @@
 
 namespace palpate::cli {
 
-void delegate_to_whole(const Program& program) {
+void delegate_to_whole(const CommandEnvironment& program) {
   const std::string whole = program.installation.whole.string();
   if (program.installation.program == whole) throw std::logic_error("palpate-whole lacks a command of its table");
   std::vector<std::string> words = program.command_line;

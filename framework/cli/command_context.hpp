@@ -18,17 +18,18 @@ constexpr int kBusy = 75;
 constexpr int kInterrupted = 130;
 
 /// The environment in which a command is performed.
-struct Program : RunEnvironment {
+struct CommandEnvironment : RunEnvironment {
   Composer& composer;
 };
 
 /// Replaces this process by `palpate-whole` with the same command line. Throws Error if that program is not built.
-[[noreturn]] void delegate_to_whole(const Program& program);
+[[noreturn]] void delegate_to_whole(const CommandEnvironment& program);
 
 /// Calls a function of `palpate-whole`. In `palpate` its address is null (see PALPATE_WHOLE), and the command is
 /// delegated.
 template <class Result, class... Parameters, class... Arguments>
-Result call_in_whole(Result (*function)(Program&, Parameters...), Program& program, const Arguments&... arguments) {
+Result call_in_whole(Result (*function)(CommandEnvironment&, Parameters...), CommandEnvironment& program,
+                     const Arguments&... arguments) {
   if (function == nullptr) delegate_to_whole(program);
   return function(program, arguments...);
 }

@@ -103,17 +103,17 @@ Argument Command::flag(const char* name, bool& value, const std::string& help, R
 }
 
 template <class Texts>
-void Command::record(const char* name, Texts& directories, Wanted wanted, const std::string& help) const {
+void Command::record(const char* name, Texts& directories, RecordKind wanted, const std::string& help) const {
   const auto find = [wanted, must_exist = finds_records_](std::string& words) -> std::string {
     const auto trouble = catch_error([&] { words = find_record(words, wanted).string(); });
     if (trouble && must_exist) throw *trouble;
     return {};
   };
-  const char* of = wanted == Wanted::run ? "RUN" : wanted == Wanted::sweep ? "SWEEP" : "DIR";
+  const char* of = wanted == RecordKind::run ? "RUN" : wanted == RecordKind::sweep ? "SWEEP" : "DIR";
   argument(name, directories, of, help + kRecordForms, {required()})->transform(CLI::Validator(find, ""));
 }
-template void Command::record(const char*, Text&, Wanted, const Text&) const;
-template void Command::record(const char*, std::vector<Text>&, Wanted, const Text&) const;
+template void Command::record(const char*, Text&, RecordKind, const Text&) const;
+template void Command::record(const char*, std::vector<Text>&, RecordKind, const Text&) const;
 
 void Command::pooled_records(std::vector<std::string>& words) const {
   argument("DIR", words, "SWEEP", "one sweep, or several sweeps and runs to pool" + std::string(kRecordForms),

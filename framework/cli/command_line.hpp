@@ -59,7 +59,7 @@ class Command {
   /// Adds a required argument that names a run or sweep, or several of them. The variable receives the directories that
   /// find_record() returns.
   template <class Texts>
-  void record(const char* name, Texts& directories, Wanted wanted, const std::string& help) const;
+  void record(const char* name, Texts& directories, RecordKind wanted, const std::string& help) const;
   /// Adds a required argument that names sweeps and runs, which are pooled into one sweep. The variable receives the
   /// words of the command line, as find_records() takes them.
   void pooled_records(std::vector<std::string>& words) const;
@@ -84,27 +84,29 @@ class CommandLine {
   /// command and returns the exit status. It may be null in `palpate` (see PALPATE_WHOLE). `needed` adds the parts of
   /// the build that the command needs.
   template <class Arguments>
-  std::pair<Command, Arguments&> add(const char* name, const char* help, int (*function)(Program&, const Arguments&),
-                                     void (*needed)(Needs&, const Arguments&)) {
+  std::pair<Command, Arguments&> add(const char* name, const char* help,
+                                     int (*function)(CommandEnvironment&, const Arguments&),
+                                     void (*needed)(NeededParts&, const Arguments&)) {
     auto arguments = std::make_shared<Arguments>();
-    const Command command = add(name, help,
-                                {[=](Program& program) { return call_in_whole(function, program, *arguments); },
-                                 [=](Needs& needs) { needed(needs, *arguments); }});
+    const Command command =
+        add(name, help,
+            {[=](CommandEnvironment& program) { return call_in_whole(function, program, *arguments); },
+             [=](NeededParts& needs) { needed(needs, *arguments); }});
     return {command, *arguments};
   }
 
   /// Parses the words of the command line. Returns an exit status if nothing remains to be done, as after --help and
   /// --version. Throws Error of kind `usage`.
   std::optional<int> parse(int argc, char** argv);
-  int perform(Program& program) const { return chosen_.perform(program); }
-  void need(Needs& needs) const { chosen_.need(needs); }
+  int perform(CommandEnvironment& program) const { return chosen_.perform(program); }
+  void need(NeededParts& needs) const { chosen_.need(needs); }
 
   CLI::App& app() { return *app_; }
 
  private:
   struct Actions {
-    std::function<int(Program&)> perform;
-    std::function<void(Needs&)> need;
+    std::function<int(CommandEnvironment&)> perform;
+    std::function<void(NeededParts&)> need;
   };
   Command add(const char* name, const char* help, Actions actions);
 
@@ -119,8 +121,8 @@ void add_commands(CommandLine& line, const std::string& named);
 
 /// Values of `needed` for commands that, whatever their arguments, need palpate-whole, or palpate-whole and all
 /// plugins.
-constexpr auto kNeedsWhole = [](Needs& needs, const auto&) { needs.whole(); };
-constexpr auto kNeedsEverything = [](Needs& needs, const auto&) { needs.everything(); };
+constexpr auto kNeedsWhole = [](NeededParts& needs, const auto&) { needs.whole(); };
+constexpr auto kNeedsEverything = [](NeededParts& needs, const auto&) { needs.everything(); };
 
 constexpr const char* kRunsHelp = "folder in which the run directories are made";
 constexpr const char* kJunitHelp = "output file in JUnit XML format, with the results of all runs and expectations";

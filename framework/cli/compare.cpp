@@ -75,9 +75,9 @@ std::string rows_text(const std::vector<Comparison>& comparisons, const CompareA
 /// Returns one comparison per metric and checkpoint, or one per metric at the end of the jobs. Returns nullopt after an
 /// interrupt. All comparisons are computed before the first is printed, so an unknown metric causes an error without
 /// other output.
-std::optional<std::vector<Comparison>> compare_all(const Program& program, const Sweep& sweep,
+std::optional<std::vector<Comparison>> compare_all(const CommandEnvironment& program, const Sweep& sweep,
                                                    const CompareArguments& arguments) {
-  const std::optional<Condition> where = Condition::of_command_line(arguments.where);
+  const std::optional<WhereCondition> where = WhereCondition::of_command_line(arguments.where);
   std::vector<Comparison> comparisons;
   const auto add = [&](const std::vector<Row>& results, const std::optional<Checkpoint>& occasion) {
     for (const std::string& metric : arguments.metrics) {
@@ -111,7 +111,7 @@ std::optional<std::vector<Comparison>> compare_all(const Program& program, const
 
 }  // namespace
 
-int compare(Program& program, const CompareArguments& arguments) {
+int compare(CommandEnvironment& program, const CompareArguments& arguments) {
   extent_of(arguments);
   const Sweep sweep = read_records(arguments.records, arguments.by);
   const auto comparisons = compare_all(program, sweep, arguments);

@@ -19,12 +19,12 @@ struct CompareArguments {
   std::string format = "text";
   std::optional<int> workers;
 };
-PALPATE_WHOLE int compare(Program& program, const CompareArguments& arguments);
+PALPATE_WHOLE int compare(CommandEnvironment& program, const CompareArguments& arguments);
 
 inline void add_compare(CommandLine& line) {
   auto [command, query] = line.add<CompareArguments>(
       "compare", "Compare groups of jobs of a sweep, with confidence intervals and paired tests", compare,
-      [](Needs& needs, const CompareArguments& arguments) {
+      [](NeededParts& needs, const CompareArguments& arguments) {
         arguments.at.empty() && !arguments.until ? needs.whole() : needs.everything();
       });
   command.pooled_records(query.records);

@@ -82,7 +82,7 @@ std::vector<Completion> records(const std::string& of) {
 }
 
 /// Returns the plugin kinds. If `names` is set, also returns each plugin as KIND/NAME.
-std::vector<Completion> plugins_by_kind(const Program& program, bool names) {
+std::vector<Completion> plugins_by_kind(const CommandEnvironment& program, bool names) {
   std::vector<Completion> out;
   for (const std::string& kind : PluginHost::kinds()) {
     out.push_back({kind, ""});
@@ -103,7 +103,7 @@ std::vector<Completion> after_comma(const std::string& typed, std::size_t from, 
 }
 
 /// Completes KEY=VALUES of a sweep. Each value is completed like the value in KEY=VALUE.
-std::vector<Completion> axis(Program& program, const std::string& config, const std::string& typed) {
+std::vector<Completion> axis(CommandEnvironment& program, const std::string& config, const std::string& typed) {
   const auto equals = typed.find('=');
   if (equals == std::string::npos) return complete_key(program, config, {}, typed);
   const std::size_t bracket = typed.compare(equals + 1, 1, "[") == 0 ? 1 : 0;
@@ -115,7 +115,7 @@ std::vector<Completion> axis(Program& program, const std::string& config, const 
 /// Returns the completions for the value of an option, according to the name of the value in the help, such as CONFIG
 /// or RUN. Other files and free texts have no completions.
 std::vector<Completion> values_of(const CLI::App& command, const CLI::Option& option, const std::string& typed,
-                                  Program& program) {
+                                  CommandEnvironment& program) {
   std::vector<Completion> out;
   for (const std::string& one : choices_of(option)) out.push_back({one, ""});
   if (!out.empty()) return out;
@@ -138,7 +138,7 @@ std::vector<Completion> values_of(const CLI::App& command, const CLI::Option& op
 
 }  // namespace
 
-std::vector<Completion> completions(CLI::App& app, Program& program, const std::vector<std::string>& words) {
+std::vector<Completion> completions(CLI::App& app, CommandEnvironment& program, const std::vector<std::string>& words) {
   std::vector<Completion> out;
   std::string typed = words.back();
   std::string kept;  // prefix of the last word that is not completed, for example "--launcher="

@@ -23,6 +23,6 @@ struct Completion {
 /// Returns the completions of the last of `words`, the words after `palpate`. The last word may be empty or incomplete.
 /// The function writes no files, and runs and builds nothing. It skips broken configs and plugins, and opens only those
 /// plugins whose options it needs.
-std::vector<Completion> completions(CLI::App& app, Program& program, const std::vector<std::string>& words);
+std::vector<Completion> completions(CLI::App& app, CommandEnvironment& program, const std::vector<std::string>& words);
 
 }  // namespace palpate::cli

@@ -93,7 +93,7 @@ void write_curves(const Sweep& sweep, const GroupCurves& made, const CurvesArgum
 
 }  // namespace
 
-int curves(Program& program, const CurvesArguments& arguments) {
+int curves(CommandEnvironment& program, const CurvesArguments& arguments) {
   const Sweep sweep = read_records(arguments.records, arguments.by);
   const std::vector<std::string> by = arguments.by.empty() ? curve_keys(sweep) : arguments.by;
   const std::vector<Row> results = sweep_results(sweep);
@@ -103,7 +103,7 @@ int curves(Program& program, const CurvesArguments& arguments) {
   if (asked.find(',') != std::string::npos)
     throw Error("command line", fmt::format("--metric: '{}' names several columns, but a figure shows one", asked),
                 "draw one figure per column");
-  const std::optional<Condition> where = Condition::of_command_line(arguments.where);
+  const std::optional<WhereCondition> where = WhereCondition::of_command_line(arguments.where);
   // Invalid keys and metrics are rejected before the long computation.
   check_group_keys(sweep, by);
   if (!results.empty()) find_metric(sweep, asked, names_of(results));

@@ -16,7 +16,7 @@ struct CurvesArguments {
   std::optional<int> workers;
   std::optional<std::string> width;  ///< width of the pictures, with its unit
 };
-PALPATE_WHOLE int curves(Program& program, const CurvesArguments& arguments);
+PALPATE_WHOLE int curves(CommandEnvironment& program, const CurvesArguments& arguments);
 
 inline void add_curves(CommandLine& line) {
   auto [command, query] = line.add<CurvesArguments>(

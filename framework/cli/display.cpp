@@ -54,7 +54,7 @@ std::string numerics_line(const Row& row) {
 /// there are no such taps.
 std::string relabelled_line(const Row& summary) {
   std::string line;
-  for (const Relabelled& one : relabelled_in(summary)) {
+  for (const RelabelledContact& one : relabelled_in(summary)) {
     line += fmt::format("{}tap {} is on the {} ({} at first)", line.empty() ? "" : ", ", one.tap,
                         one.on_object ? "object" : "desk", one.on_object ? "desk" : "object");
   }
@@ -115,12 +115,12 @@ void print_message(const std::string& text) {
   std::fputs(displayable(text).c_str(), stderr);
 }
 
-std::string record_line(const RunReport& report) {
+std::string record_line(const RunConclusion& report) {
   return fmt::format("{} {}",
                      report.interrupted ? "resume with: palpate resume" : "record:", report.directory.string());
 }
 
-void print_summary(const RunReport& report) {
+void print_summary(const RunConclusion& report) {
   const Row& row = report.summary;
   // Erases the live line of the interrupted tap.
   std::string text = report.interrupted && ::isatty(STDOUT_FILENO) != 0 ? std::string(kClearLine) : "";

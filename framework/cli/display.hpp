@@ -38,9 +38,9 @@ std::string displayable(std::string_view text);
 void print_message(const std::string& text);
 
 /// Returns a line with the path of the record, or with the command that resumes the run.
-std::string record_line(const RunReport& report);
+std::string record_line(const RunConclusion& report);
 
 /// Prints the result of a run in a few lines.
-void print_summary(const RunReport& report);
+void print_summary(const RunConclusion& report);
 
 }  // namespace palpate::cli

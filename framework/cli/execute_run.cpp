@@ -16,11 +16,11 @@
 
 namespace palpate::cli {
 
-int execute_run(const Program& program, const ResolvedConfig& config, const RunOutput& output,
+int execute_run(const CommandEnvironment& program, const ResolvedConfig& config, const RunOutput& output,
                 const RunAction& action) {
   listen_for_interrupts();
   outlive_reader();
-  const std::unique_ptr<Step> step = Step::when(output.step, config.options, program.interrupted);
+  const std::unique_ptr<TapConfirmation> step = TapConfirmation::when(output.step, config.options, program.interrupted);
   std::vector<Observer*> observers;
   if (step) observers.push_back(step.get());
   std::optional<Watcher> watcher;
@@ -28,7 +28,7 @@ int execute_run(const Program& program, const ResolvedConfig& config, const RunO
   std::optional<TapTable> table;
   if (output.table) observers.push_back(&table.emplace(config.options.taps));
   const GateOutput gate{config.options.name, output.junit, output.table};
-  RunReport report;
+  RunConclusion report;
   const std::optional<Error> trouble = catch_error([&] {
     report = action(observers);
     // A run that makes no further tap does not call announce(), which starts the watcher.

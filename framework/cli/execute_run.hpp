@@ -21,8 +21,9 @@ struct RunOutput {
 };
 
 /// Function that starts or resumes the run with the given observers.
-using RunAction = std::function<RunReport(const std::vector<Observer*>& observers)>;
+using RunAction = std::function<RunConclusion(const std::vector<Observer*>& observers)>;
 /// Calls `action`, prints the result and checks the expectations of the config. Returns the exit status. Throws Error.
-int execute_run(const Program& program, const ResolvedConfig& config, const RunOutput& output, const RunAction& action);
+int execute_run(const CommandEnvironment& program, const ResolvedConfig& config, const RunOutput& output,
+                const RunAction& action);
 
 }  // namespace palpate::cli

@@ -6,7 +6,7 @@
 
 namespace palpate::cli {
 
-int explain(Program& program, const ExplainArguments& arguments) {
+int explain(CommandEnvironment& program, const ExplainArguments& arguments) {
   check_one_run(arguments.directory);
   const RecordedRun recording = read_recorded_run(program.host, arguments.directory);
   print_text(explain_tap(program, recording, arguments.tap));

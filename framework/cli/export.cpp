@@ -59,7 +59,7 @@ int export_tables(const fs::path& directory, const std::string& to) {
 
 }  // namespace
 
-int export_run(Program& program, const ExportArguments& arguments) {
+int export_run(CommandEnvironment& program, const ExportArguments& arguments) {
   check_one_run(arguments.directory);
   if (arguments.format == "csv") return export_tables(arguments.directory, arguments.to);
   const RecordedRun recording = read_recorded_run(program.host, arguments.directory);

@@ -11,13 +11,13 @@ struct ExportArguments {
   std::string format = "ply";
   std::string to;  ///< output folder; "": export/ in the run directory
 };
-PALPATE_WHOLE int export_run(Program& program, const ExportArguments& arguments);
+PALPATE_WHOLE int export_run(CommandEnvironment& program, const ExportArguments& arguments);
 
 inline void add_export(CommandLine& line) {
   auto [command, exported] = line.add<ExportArguments>(
       "export", "Export the surface and the taps of a run for other programs", export_run,
-      [](Needs& needs, const ExportArguments& arguments) { needs.whole_and_record(arguments.directory); });
-  command.record("RUN", exported.directory, Wanted::run, "run");
+      [](NeededParts& needs, const ExportArguments& arguments) { needs.whole_and_record(arguments.directory); });
+  command.record("RUN", exported.directory, RecordKind::run, "run");
   command.argument("--format", exported.format, "NAME",
                    "file format: ply is for mesh viewers, csv writes tables of the taps, timings, objects and attempts",
                    {one_of({"ply", "csv"}), with_default()});

@@ -24,18 +24,20 @@ void check_junit(const std::string& junit) {
   if (::access(folder.c_str(), W_OK) != 0) throw Error(junit, "its folder is not writable");
 }
 
-void write_junit(const std::vector<Verdict>& verdicts, const std::vector<RunOutcome>& runs, const GateOutput& output) {
+void write_junit(const std::vector<ExpectationResult>& verdicts, const std::vector<RunOutcome>& runs,
+                 const GateOutput& output) {
   if (output.junit.empty()) return;
   write_file(output.junit, junit_xml(output.suite, test_cases(output.suite, runs, verdicts)));
 }
 
 bool conclude(const std::vector<Expectation>& expectations, const std::vector<RunOutcome>& runs,
               const GateOutput& output) {
-  const std::vector<Verdict> verdicts = judge(expectations, runs);
-  const auto held = std::count_if(verdicts.begin(), verdicts.end(), [](const Verdict& one) { return one.holds; });
+  const std::vector<ExpectationResult> verdicts = judge(expectations, runs);
+  const auto held =
+      std::count_if(verdicts.begin(), verdicts.end(), [](const ExpectationResult& one) { return one.holds; });
   if (output.count_on_stdout && !verdicts.empty()) print_out("expected: {} of {}\n", held, verdicts.size());
   flush_output();
-  for (const Verdict& verdict : verdicts) {
+  for (const ExpectationResult& verdict : verdicts) {
     if (!verdict.holds) print_message(verdict_line(verdict) + "\n");
   }
   write_junit(verdicts, runs, output);

@@ -21,7 +21,8 @@ struct GateOutput {
 void check_junit(const std::string& junit);
 
 /// Writes the JUnit file if `output.junit` names one. Throws Error.
-void write_junit(const std::vector<Verdict>& verdicts, const std::vector<RunOutcome>& runs, const GateOutput& output);
+void write_junit(const std::vector<ExpectationResult>& verdicts, const std::vector<RunOutcome>& runs,
+                 const GateOutput& output);
 
 /// Checks the expectations, prints one line on stderr per expectation that fails, and writes the JUnit file. Returns
 /// whether all expectations hold. Throws Error.

@@ -146,7 +146,7 @@ std::string meaning_of(const FieldDescription& field) {
   return fmt::format("{} ({}{}{})", field.meaning, field.type_name(), field.range.empty() ? "" : " ", field.range);
 }
 
-std::vector<Completion> values(const Program& program, const std::filesystem::path& beside, const Keys& keys,
+std::vector<Completion> values(const CommandEnvironment& program, const std::filesystem::path& beside, const Keys& keys,
                                const FieldDescription& field, const std::string& path) {
   std::vector<Completion> out;
   if (field.type == Type::plugin && field.adopted) return plugin_names(program, field.kind);
@@ -172,7 +172,7 @@ std::vector<Completion> values(const Program& program, const std::filesystem::pa
 }  // namespace
 
 std::string purpose_of(const std::filesystem::path& config) {
-  std::istringstream in(read_bounded(config, kMostConfigBytes, Origin::user).text);
+  std::istringstream in(read_bounded(config, kMostConfigBytes, FileOrigin::user).text);
   std::string out;
   for (std::string line; std::getline(in, line) && line.rfind("# ", 0) == 0;) {
     out += (out.empty() ? "" : " ") + line.substr(2);
@@ -181,7 +181,7 @@ std::string purpose_of(const std::filesystem::path& config) {
   return !out.empty() && out.back() == '.' ? out.substr(0, out.size() - 1) : out;
 }
 
-std::vector<Completion> plugin_names(const Program& program, const std::string& kind) {
+std::vector<Completion> plugin_names(const CommandEnvironment& program, const std::string& kind) {
   std::vector<Completion> out;
   for (const std::string& name : program.host.names(kind)) {
     out.push_back({name, purpose_of(program.installation.configs / kind / (name + ".yaml"))});
@@ -189,7 +189,7 @@ std::vector<Completion> plugin_names(const Program& program, const std::string& 
   return out;
 }
 
-std::vector<Completion> complete_key(Program& program, const std::string& config,
+std::vector<Completion> complete_key(CommandEnvironment& program, const std::string& config,
                                      const std::vector<std::string>& before, const std::string& typed) {
   const Tree tree = config_so_far(program.composer, config, before);
   const Keys keys(program.host, tree);

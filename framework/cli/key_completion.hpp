@@ -14,7 +14,7 @@ namespace palpate::cli {
 /// are the earlier overrides. Keys are completed level by level, like folders: first `kernel.`, then
 /// `kernel.length_scale=`. The options of a plugin are the options of the plugin that the config and the overrides
 /// choose, or of the default plugin if the config is invalid.
-std::vector<Completion> complete_key(Program& program, const std::string& config,
+std::vector<Completion> complete_key(CommandEnvironment& program, const std::string& config,
                                      const std::vector<std::string>& before, const std::string& typed);
 
 /// Returns the first sentence of the comment at the beginning of a config; "" if there is no comment.
@@ -22,6 +22,6 @@ std::string purpose_of(const std::filesystem::path& config);
 
 /// Returns the names of the plugins of a kind. The meaning of each is the purpose of the shipped group file with the
 /// same name.
-std::vector<Completion> plugin_names(const Program& program, const std::string& kind);
+std::vector<Completion> plugin_names(const CommandEnvironment& program, const std::string& kind);
 
 }  // namespace palpate::cli

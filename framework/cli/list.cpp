@@ -40,14 +40,14 @@ void warn_others(const Catalogue& all, const fs::path& folder) {
 
 }  // namespace
 
-int list_runs(Program&, const ListArguments& arguments) {
+int list_runs(CommandEnvironment&, const ListArguments& arguments) {
   const fs::path folder = arguments.folder;
   if (!is_there(folder))
     throw Error(folder.string(), "is not a folder", "start a run, which creates runs/, or name another folder");
   std::error_code trouble_there;
   list_folder(folder, trouble_there);
   if (trouble_there) throw Error(folder.string(), trouble_there.message(), "name a folder with runs");
-  const std::optional<Condition> where = Condition::of_command_line(arguments.where);
+  const std::optional<WhereCondition> where = WhereCondition::of_command_line(arguments.where);
   const Catalogue all = read_catalogue(folder);
   std::vector<ListedRecord> records;
   for (const fs::path& directory : all.records) {

@@ -11,7 +11,7 @@ struct ListArguments {
   std::optional<std::string> where;
   bool json = false;
 };
-PALPATE_WHOLE int list_runs(Program& program, const ListArguments& arguments);
+PALPATE_WHOLE int list_runs(CommandEnvironment& program, const ListArguments& arguments);
 
 inline void add_list(CommandLine& line) {
   auto [command, list] = line.add<ListArguments>("list", "List the runs and sweeps in a folder, sorted by start time",

@@ -20,7 +20,7 @@ namespace palpate::cli {
 namespace {
 
 /// Prints the completions of the last of `words`, one per line.
-int print_completions(CommandLine& line, Program& program, std::vector<std::string> words) {
+int print_completions(CommandLine& line, CommandEnvironment& program, std::vector<std::string> words) {
   if (words.empty()) words.emplace_back();
   for (const Completion& one : completions(line.app(), program, words)) {
     print_data(fmt::format("{}\t{}\n", one.word, one.meaning));
@@ -45,7 +45,7 @@ int run_main(int argc, char** argv) {
   PluginHost host(PluginHost::search_path(installation.plugins));
   Composer composer(installation.configs, config_keys());
   host.set_group_names([&](const std::string& kind) { return composer.names_of(kind); });
-  Program program{{host, installation, {argv, argv + argc}, &interrupted}, composer};
+  CommandEnvironment program{{host, installation, {argv, argv + argc}, &interrupted}, composer};
   if (completes) return print_completions(line, program, {argv + 2, argv + argc});
   if (const std::optional<int> status = line.parse(argc, argv)) return *status;
   // With SIG_IGN, which a parent may have set, exit statuses of child processes would be lost.
@@ -54,7 +54,7 @@ int run_main(int argc, char** argv) {
     math::choose_instructions();  // An invalid PALPATE_INSTRUCTIONS is reported here, before the command begins.
     return line.perform(program);
   }
-  Needs needs(program);
+  NeededParts needs(program);
   line.need(needs);
   needs.print();
   return kDone;

@@ -43,7 +43,7 @@ struct NewArguments {
 };
 
 /// Throws Error unless the plugin can be created.
-void check_new(const Program& program, const NewArguments& arguments) {
+void check_new(const CommandEnvironment& program, const NewArguments& arguments) {
   const auto& [kind, name, python] = arguments;
   const std::vector<std::string> kinds = PluginHost::kinds();
   if (std::find(kinds.begin(), kinds.end(), kind) == kinds.end()) {
@@ -66,7 +66,7 @@ void check_new(const Program& program, const NewArguments& arguments) {
 /// Copies the starter file `from` to the file `to` in the folder of the plugin, and fills in the names of plugin and
 /// kind.
 void copy_starter(const NewArguments& arguments, const fs::path& from, const std::string& to) {
-  std::string text = read_bounded(from, kMostConfigBytes, Origin::user).text;
+  std::string text = read_bounded(from, kMostConfigBytes, FileOrigin::user).text;
   if (text.empty()) throw Error(from.string(), "cannot be read", "install palpate again");
   boost::replace_all(text, "KIND", arguments.kind);
   boost::replace_all(text, "starter", arguments.name);
@@ -94,7 +94,7 @@ void create_python(const Installation& installation, const NewArguments& argumen
       arguments.name, called);
 }
 
-int new_plugin(Program& program, const NewArguments& arguments) {
+int new_plugin(CommandEnvironment& program, const NewArguments& arguments) {
   check_new(program, arguments);
   const auto& [kind, name, python] = arguments;
   const fs::path starters = program.installation.configs.parent_path() / "plugins" / "starters";
@@ -115,7 +115,7 @@ int new_plugin(Program& program, const NewArguments& arguments) {
 
 void add_new(CommandLine& line) {
   auto [command, arguments] = line.add<NewArguments>("new", "Create a starter plugin and an experiment that uses it",
-                                                     new_plugin, [](Needs&, const NewArguments&) {});
+                                                     new_plugin, [](NeededParts&, const NewArguments&) {});
   command.argument("KIND", arguments.kind, "KIND",
                    fmt::format("kind of the plugin: {}", fmt::join(PluginHost::kinds(), ", ")), {required()});
   command.argument("NAME", arguments.name, "NAME", "name of the plugin; the new folder has the same name",

@@ -65,9 +65,9 @@ void print_config(const Sweep& sweep, const Pareto& pareto, const Setting& chose
 
 }  // namespace
 
-int pareto(Program&, const ParetoArguments& arguments) {
+int pareto(CommandEnvironment&, const ParetoArguments& arguments) {
   const Sweep sweep = read_records(arguments.records, {});
-  const std::optional<Condition> where = Condition::of_command_line(arguments.where);
+  const std::optional<WhereCondition> where = WhereCondition::of_command_line(arguments.where);
   const Pareto pareto =
       make_pareto(sweep, sweep_results(sweep), arguments.cost, arguments.error, where ? &*where : nullptr);
   const bool asked = arguments.within.has_value();

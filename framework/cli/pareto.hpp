@@ -13,7 +13,7 @@ struct ParetoArguments {
   std::optional<std::string> within;
   std::optional<std::string> where;
 };
-PALPATE_WHOLE int pareto(Program& program, const ParetoArguments& arguments);
+PALPATE_WHOLE int pareto(CommandEnvironment& program, const ParetoArguments& arguments);
 
 inline void add_pareto(CommandLine& line) {
   auto [command, query] = line.add<ParetoArguments>(

@@ -47,7 +47,7 @@ struct PluginsArguments {
   bool json = false;
 };
 
-int plugins(Program& program, const PluginsArguments& arguments) {
+int plugins(CommandEnvironment& program, const PluginsArguments& arguments) {
   const std::string& what = arguments.plugin;
   const auto slash = what.find('/');
   const std::string kind = what.substr(0, slash);
@@ -83,9 +83,9 @@ int plugins(Program& program, const PluginsArguments& arguments) {
 }  // namespace
 
 void add_plugins(CommandLine& line) {
-  auto [command, arguments] =
-      line.add<PluginsArguments>("plugins", "List all plugins, or show the options of one plugin", plugins,
-                                 [](Needs& needs, const PluginsArguments& given) { needs.listing(given.plugin); });
+  auto [command, arguments] = line.add<PluginsArguments>(
+      "plugins", "List all plugins, or show the options of one plugin", plugins,
+      [](NeededParts& needs, const PluginsArguments& given) { needs.listing(given.plugin); });
   command.argument("PLUGIN", arguments.plugin, "KIND[/NAME]",
                    "plugin kind, for example kernel, or plugin, for example kernel/rbf");
   command.flag("--json", arguments.json, "print the list as JSON");

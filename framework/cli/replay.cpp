@@ -17,7 +17,7 @@ struct ReplayArguments {
   std::string directory;
 };
 
-int replay(Program& program, const ReplayArguments& arguments) {
+int replay(CommandEnvironment& program, const ReplayArguments& arguments) {
   const std::string& directory = arguments.directory;
   constexpr std::size_t kShown = 10;
   check_one_run(directory);
@@ -30,7 +30,7 @@ int replay(Program& program, const ReplayArguments& arguments) {
   }
   print_out("{} taps, {} numbers, {} differ\n", report.taps, report.numbers, report.differences.size());
   for (std::size_t i = 0; i < report.differences.size() && i < kShown; ++i) {
-    const Difference& one = report.differences[i];
+    const ReplayDifference& one = report.differences[i];
     print_out("{}: {}: recorded {}, now {}\n", one.tap == 0 ? std::string("summary") : fmt::format("tap {}", one.tap),
               one.field, one.recorded, one.replayed);
   }
@@ -48,8 +48,8 @@ int replay(Program& program, const ReplayArguments& arguments) {
 void add_replay(CommandLine& line) {
   auto [command, arguments] = line.add<ReplayArguments>(
       "replay", "Recompute a run from its recorded taps and compare every number with the record", replay,
-      [](Needs& needs, const ReplayArguments& given) { needs.record(given.directory); });
-  command.record("DIR", arguments.directory, Wanted::run, "run");
+      [](NeededParts& needs, const ReplayArguments& given) { needs.record(given.directory); });
+  command.record("DIR", arguments.directory, RecordKind::run, "run");
   command.examples({"palpate replay runs/object_i/422cd70eb5f7", "palpate replay runs/first/*"});
 }
 

@@ -115,7 +115,7 @@ void report_several(const RunEnvironment& environment, const ReportArguments& ar
 
 }  // namespace
 
-int report(Program& program, const ReportArguments& arguments) {
+int report(CommandEnvironment& program, const ReportArguments& arguments) {
   // An interrupt may end this command at once, because no tap is being made and each file is replaced as a whole.
   for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, SIG_DFL);
   if (!arguments.to.empty()) make_folder(arguments.to);

@@ -12,15 +12,15 @@ struct ReportArguments {
   bool figures = false;
   bool paper = false;
 };
-PALPATE_WHOLE int report(Program& program, const ReportArguments& arguments);
+PALPATE_WHOLE int report(CommandEnvironment& program, const ReportArguments& arguments);
 
 inline void add_report(CommandLine& line) {
   auto [command, page] = line.add<ReportArguments>(
       "report", "Write an HTML page of a run or sweep, optionally with figures, or one page that compares several runs",
-      report, [](Needs& needs, const ReportArguments& arguments) {
+      report, [](NeededParts& needs, const ReportArguments& arguments) {
         for (const std::string& directory : arguments.directories) needs.whole_and_record(directory);
       });
-  command.record("DIR", page.directories, Wanted::any, "run or sweep, or several runs");
+  command.record("DIR", page.directories, RecordKind::any, "run or sweep, or several runs");
   command.flag("--figures", page.figures, "also draw the panels as PNG files, with gnuplot");
   command.flag("--paper", page.paper, "draw figures in the layout of the figures in the paper");
   command.argument(

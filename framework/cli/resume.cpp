@@ -12,7 +12,7 @@
 namespace palpate::cli {
 namespace {
 
-int resume(Program& program, const ResumeArguments& arguments) {
+int resume(CommandEnvironment& program, const ResumeArguments& arguments) {
   check_launch(arguments.launch);
   if (is_sweep(arguments.directory)) return call_in_whole(resume_sweep, program, arguments);
   if (!arguments.jobs.empty()) {
@@ -37,11 +37,11 @@ int resume(Program& program, const ResumeArguments& arguments) {
 
 void add_resume(CommandLine& line) {
   auto [command, arguments] = line.add<ResumeArguments>("resume", "Resume an interrupted run or sweep", resume,
-                                                        [](Needs& needs, const ResumeArguments& given) {
+                                                        [](NeededParts& needs, const ResumeArguments& given) {
                                                           if (given.launch.watch) needs.whole();
                                                           needs.record(given.directory);
                                                         });
-  command.record("DIR", arguments.directory, Wanted::any, "run or sweep");
+  command.record("DIR", arguments.directory, RecordKind::any, "run or sweep");
   command.flag("--retry-failed", arguments.options.retry_failed, "also resume failed runs");
   command.flag("--force", arguments.options.force,
                "resume even if another build of palpate or its plugins started the run");

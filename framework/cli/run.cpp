@@ -76,7 +76,7 @@ Error axis_error(const std::vector<Override>& overrides, const std::vector<std::
 
 /// Prints the models that the choice of taps needs, each with the readers that need it. Each line begins with `mark`.
 /// Throws Error for a config that cannot be run.
-void print_models(const Program& program, const ResolvedConfig& config, const char* mark) {
+void print_models(const CommandEnvironment& program, const ResolvedConfig& config, const char* mark) {
   std::map<std::string, std::string> models;
   for (const PlannedModel& one : models_of(program, config)) {
     std::string& readers = models[one.model];
@@ -87,7 +87,8 @@ void print_models(const Program& program, const ResolvedConfig& config, const ch
 }
 
 /// Prints the resolved config in the form that the arguments select.
-void print_resolved_config(const Program& program, const RunArguments& arguments, const ResolvedConfig& config) {
+void print_resolved_config(const CommandEnvironment& program, const RunArguments& arguments,
+                           const ResolvedConfig& config) {
   if (arguments.identity) {
     print_data(identity_text(config.notes));
   } else if (arguments.origins) {
@@ -109,14 +110,14 @@ void print_plan(const ResolvedConfig& config, const std::filesystem::path& direc
 }
 
 /// Prints the command that builds all parts, if palpate-whole is not built yet and stderr is a terminal.
-void offer_full_build(const Program& program) {
+void offer_full_build(const CommandEnvironment& program) {
   if (::isatty(STDERR_FILENO) == 0 || is_there(program.installation.whole)) return;
   print_message(
       "sweeps, pages and the other plugins are built when a command first needs them; './palpate build' builds them "
       "now\n");
 }
 
-int run(Program& program, const RunArguments& arguments) {
+int run(CommandEnvironment& program, const RunArguments& arguments) {
   check_given_once(arguments.overrides);
   std::vector<Override> overrides;
   for (const std::string& text : arguments.overrides) overrides.push_back(parse_override(text));
@@ -145,7 +146,7 @@ int run(Program& program, const RunArguments& arguments) {
   RunOutput output{!arguments.quiet && !arguments.json, arguments.json, arguments.junit, arguments.step};
   if (arguments.watch) output.watched = directory;
   const int status = execute_run(program, config, output, [&](const std::vector<Observer*>& observers) {
-    return start_run(program, config, directory, {arguments.force, Taps::by_backend, arguments.step}, observers);
+    return start_run(program, config, directory, {arguments.force, TapMaker::by_backend, arguments.step}, observers);
   });
   if (arguments.quiet) return status;
   for (const std::string& line : partly_given_sizes(config.tree, config.notes)) print_message(line + "\n");
@@ -157,7 +158,7 @@ int run(Program& program, const RunArguments& arguments) {
 
 void add_run(CommandLine& line) {
   auto [command, arguments] =
-      line.add<RunArguments>("run", "Run one experiment", run, [](Needs& needs, const RunArguments& given) {
+      line.add<RunArguments>("run", "Run one experiment", run, [](NeededParts& needs, const RunArguments& given) {
         if (given.watch) needs.whole();
         needs.config(given.config, given.overrides, false);
       });

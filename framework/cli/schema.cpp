@@ -116,7 +116,7 @@ void sweep_schema(Tree& sweep) {
 
 struct SchemaArguments {};
 
-int schema(Program& program, const SchemaArguments&) {
+int schema(CommandEnvironment& program, const SchemaArguments&) {
   ExperimentOptions options;
   const std::vector<FieldDescription> fields =
       describe_fields([&](Fields& visitor) { options.list(visitor); },
@@ -148,7 +148,7 @@ int schema(Program& program, const SchemaArguments&) {
 void add_schema(CommandLine& line) {
   const Command command =
       line.add<SchemaArguments>("schema", "Print the JSON Schema of config files, for completion and checks in editors",
-                                schema, [](Needs& needs, const SchemaArguments&) { needs.every_plugin(); })
+                                schema, [](NeededParts& needs, const SchemaArguments&) { needs.every_plugin(); })
           .first;
   command.examples({"palpate schema > palpate.schema.json", "palpate schema | grep length_scale"});
 }

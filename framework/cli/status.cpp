@@ -14,7 +14,7 @@ struct StatusArguments {
   std::string directory;
 };
 
-int status(Program& program, const StatusArguments& arguments) {
+int status(CommandEnvironment& program, const StatusArguments& arguments) {
   const std::string& directory = arguments.directory;
   if (is_sweep(directory)) return call_in_whole(status_of_sweep, program, directory);
   // The config is read but not resolved, because resolving needs the plugins.
@@ -44,10 +44,10 @@ int status(Program& program, const StatusArguments& arguments) {
 
 void add_status(CommandLine& line) {
   auto [command, arguments] = line.add<StatusArguments>("status", "Show the state of a run or sweep", status,
-                                                        [](Needs& needs, const StatusArguments& given) {
+                                                        [](NeededParts& needs, const StatusArguments& given) {
                                                           if (is_sweep(given.directory)) needs.whole();
                                                         });
-  command.record("DIR", arguments.directory, Wanted::any, "run or sweep");
+  command.record("DIR", arguments.directory, RecordKind::any, "run or sweep");
   command.examples({"palpate status runs/object_i/422cd70eb5f7", "palpate status runs/first/*"});
 }
 

@@ -28,21 +28,22 @@ std::string who_chose(const TapRecord& tap) {
 
 }  // namespace
 
-std::unique_ptr<Step> Step::when(bool wanted, const ExperimentOptions& options, const std::atomic<bool>* stopped) {
+std::unique_ptr<TapConfirmation> TapConfirmation::when(bool wanted, const ExperimentOptions& options,
+                                                       const std::atomic<bool>* stopped) {
   if (!wanted) return nullptr;
   if (::isatty(STDIN_FILENO) == 0 || ::isatty(STDERR_FILENO) == 0) {
     throw Error("command line", "--step: needs a terminal to show each tap and to wait for Enter",
                 "connect stdin and stderr to a terminal");
   }
-  return std::unique_ptr<Step>(new Step(options, stopped));
+  return std::unique_ptr<TapConfirmation>(new TapConfirmation(options, stopped));
 }
 
-Step::Step(const ExperimentOptions& options, const std::atomic<bool>* stopped)
+TapConfirmation::TapConfirmation(const ExperimentOptions& options, const std::atomic<bool>* stopped)
     : budget_(options.taps), two_part_(belief_option(options, "surface") == "two_part"), interrupted_(stopped) {}
 
-bool Step::permits(const TapRecord& tap, const Experiment& experiment) {
+bool TapConfirmation::permits(const TapRecord& tap, const Experiment& experiment) {
   const Preview preview = experiment.preview(tap);
-  const Scale places = usual_scale(Unit::metre, LengthKind::place);
+  const DisplayScale places = usual_scale(Unit::metre, LengthKind::place);
   std::string text =
       fmt::format("tap {} of {} at ({}, {}) {}, {}", tap.number(), budget_, places.number(tap.target().x),
                   places.number(tap.target().y), places.unit, who_chose(tap));
@@ -65,7 +66,7 @@ bool Step::permits(const TapRecord& tap, const Experiment& experiment) {
 
 /// Returns the next line of stdin without its line end. Returns nullopt after the end of the input and after an
 /// interrupt.
-std::optional<std::string> Step::read_line() const {
+std::optional<std::string> TapConfirmation::read_line() const {
   std::string line;
   while (line.empty() || line.back() != '\n') {
     pollfd input{STDIN_FILENO, POLLIN, 0};

@@ -37,7 +37,7 @@ namespace {
 
 /// A sweep that is being started or resumed.
 struct SweepExecution {
-  const Program& program;
+  const CommandEnvironment& program;
   const Sweep& sweep;
   ResumeOptions options;
   const LaunchArguments& launch;
@@ -75,7 +75,7 @@ std::optional<ResolvedConfig> readable_config(const SweepExecution& execution, s
 
 /// State of the jobs after the launch. `ended_unrecorded`: all jobs have ended, but some ends or files could not be
 /// recorded. `blocked`: a job could not begin, for a reason that applies to all jobs and was printed on stderr.
-enum class Launched { submitted, ended, ended_unrecorded, blocked };
+enum class LaunchOutcome { submitted, ended, ended_unrecorded, blocked };
 
 /// Returns the maximum number of initial taps of a job; nullopt if the number depends on a camera's view. All taps of a
 /// run may be initial taps if the run begins with a search or taps from any side. `result`: the job's row of
@@ -86,7 +86,7 @@ std::optional<int> initial_taps_of(const ExperimentOptions& options, const Row& 
   return static_cast<int>(options.initial.searches() || any_side ? options.taps : options.initial.count);
 }
 
-int finish_whole(const SweepExecution& execution, const JobStates& end, bool interrupted, Launched launched) {
+int finish_whole(const SweepExecution& execution, const JobStates& end, bool interrupted, LaunchOutcome launched) {
   const Sweep& sweep = execution.sweep;
   const auto initial_taps = [&](std::size_t job, const Row& result) {
     const auto config = readable_config(execution, job);
@@ -96,9 +96,9 @@ int finish_whole(const SweepExecution& execution, const JobStates& end, bool int
   print_failures(sweep, end.failures);
   const std::string directory = sweep.directory.string();
   if (!end.failures.empty()) print_out("try them again: palpate resume --retry-failed {}\n", directory);
-  const bool open = interrupted || !end.open.empty() || launched == Launched::ended_unrecorded;
+  const bool open = interrupted || !end.open.empty() || launched == LaunchOutcome::ended_unrecorded;
   if (!open) set_record_line("record: " + directory);
-  const bool blocked = launched == Launched::blocked && !interrupted;
+  const bool blocked = launched == LaunchOutcome::blocked && !interrupted;
   print_out("{} {}\n",
             !open     ? "record:"
             : blocked ? "stopped for the reason above; correct it, then run: palpate resume"
@@ -140,7 +140,7 @@ void print_next_commands(const SweepExecution& execution, const Launcher& launch
 
 /// Runs all open jobs and returns when they have ended. On a cluster without --wait, returns after the jobs are
 /// submitted.
-Launched launch_open(const SweepExecution& execution, const JobStates& begun) {
+LaunchOutcome launch_open(const SweepExecution& execution, const JobStates& begun) {
   const auto print_array = [](const TaskArray& array) {
     print_out("array {}: {}, {}, logs in {}\n", array.id, counted(array.tasks, "task"), counted(array.jobs, "job"),
               array.logs.string());
@@ -148,15 +148,15 @@ Launched launch_open(const SweepExecution& execution, const JobStates& begun) {
       print_message(fmt::format("no node can run array {} now: {}; 'sinfo' shows the nodes\n", array.id, array.doubt));
     flush_output();
   };
-  const Program& program = execution.program;
+  const CommandEnvironment& program = execution.program;
   const std::unique_ptr<Launcher> launcher =
       launcher_type(execution.launch.launcher).make({program, execution.sweep, launch_options(execution), print_array});
   if (is_on_cluster(execution)) {
-    if (begun.open.empty() || program.interrupted->load()) return Launched::ended;  // There is nothing to submit.
+    if (begun.open.empty() || program.interrupted->load()) return LaunchOutcome::ended;  // There is nothing to submit.
     if (!execution.launch.wait) {
       launcher->submit(begun.open);
       print_next_commands(execution, *launcher);
-      return Launched::submitted;
+      return LaunchOutcome::submitted;
     }
     // If the terminal is closed, the program stops waiting, but the jobs continue. Under nohup, the program continues
     // to wait.
@@ -169,13 +169,13 @@ Launched launch_open(const SweepExecution& execution, const JobStates& begun) {
         blocked = progress.blocked;
         line.show(progress);
       });
-  return blocked ? Launched::blocked : all_recorded ? Launched::ended : Launched::ended_unrecorded;
+  return blocked ? LaunchOutcome::blocked : all_recorded ? LaunchOutcome::ended : LaunchOutcome::ended_unrecorded;
 }
 
 /// Returns all jobs that are not done, ascending.
 std::vector<std::size_t> jobs_not_done(const JobStates& standing) {
   std::vector<std::size_t> out = standing.open;
-  for (const SweepFailure& one : standing.failures) out.push_back(one.job);
+  for (const FailedJob& one : standing.failures) out.push_back(one.job);
   std::sort(out.begin(), out.end());
   return out;
 }
@@ -210,14 +210,14 @@ int execute_sweep(const SweepExecution& execution, JobStates begun) {
     print_message("jobs run one at a time, because the backend moves only one arm\n");
   }
   if (execution.launch.watch) start_watcher(execution.program, sweep.directory);
-  const Launched launched = launch_open(execution, begun);
-  if (launched == Launched::submitted) return kDone;
+  const LaunchOutcome launched = launch_open(execution, begun);
+  if (launched == LaunchOutcome::submitted) return kDone;
   // Missing files of ended jobs are not checked here. execute_jobs() has reported them, and this build may be unable to
   // restore the files of a job of another build.
   const JobStates end = read_job_states(sweep, jobs, JobCheck::nothing);
   const bool interrupted = execution.program.interrupted->load();
   if (whole) return finish_whole(execution, end, interrupted, launched);
-  return finish_part(sweep, end, interrupted, launched != Launched::ended_unrecorded);
+  return finish_part(sweep, end, interrupted, launched != LaunchOutcome::ended_unrecorded);
 }
 
 /// Returns the numbers in a text such as "0-7,12" in ascending order, each once. Throws Error for a number that is too
@@ -262,11 +262,11 @@ void check_taps_are_own(const ResolvedConfig& config, const std::string& place) 
 
 }  // namespace
 
-std::size_t jobs_of_sweep(Program& program, const std::string& config) {
+std::size_t jobs_of_sweep(CommandEnvironment& program, const std::string& config) {
   return plan_sweep(program.composer, program.host, config, {}, "runs").sweep.jobs.size();
 }
 
-int sweep(Program& program, const SweepArguments& arguments) {
+int sweep(CommandEnvironment& program, const SweepArguments& arguments) {
   check_launch(arguments.launch);
   const LauncherType& launcher = checked_launcher(arguments.launch);
   // This check comes before the creation of the sweep, because a sweep that no scheduler can run must not be created.
@@ -308,7 +308,7 @@ int sweep(Program& program, const SweepArguments& arguments) {
   return execute_sweep(execution, read_job_states(planned, jobs_of(execution)));
 }
 
-int resume_sweep(Program& program, const ResumeArguments& arguments) {
+int resume_sweep(CommandEnvironment& program, const ResumeArguments& arguments) {
   checked_launcher(arguments.launch);
   const auto refuse = [](const std::string& reason, const char* hint) { throw Error("command line", reason, hint); };
   if (arguments.step) refuse("--step: " + arguments.directory + " is a sweep of many runs", "leave it out");
@@ -331,7 +331,7 @@ int resume_sweep(Program& program, const ResumeArguments& arguments) {
 }
 
 /// Reads only the directories of the jobs. Calls neither the scheduler nor another process.
-int status_of_sweep(Program&, const std::string& directory) {
+int status_of_sweep(CommandEnvironment&, const std::string& directory) {
   const Sweep sweep = read_sweep(directory);
   JobStates now = read_job_states(sweep, all_jobs(sweep), JobCheck::running);
   print_out("{} jobs", sweep.jobs.size());

@@ -16,12 +16,12 @@ struct SweepArguments {
   bool list = false;
   LaunchArguments launch;
 };
-PALPATE_WHOLE int sweep(Program& program, const SweepArguments& arguments);
+PALPATE_WHOLE int sweep(CommandEnvironment& program, const SweepArguments& arguments);
 
-PALPATE_WHOLE int resume_sweep(Program& program, const ResumeArguments& arguments);
-PALPATE_WHOLE int status_of_sweep(Program& program, const std::string& directory);
+PALPATE_WHOLE int resume_sweep(CommandEnvironment& program, const ResumeArguments& arguments);
+PALPATE_WHOLE int status_of_sweep(CommandEnvironment& program, const std::string& directory);
 /// Returns the number of jobs of the sweep in the file `config`. Throws Error for an invalid config.
-PALPATE_WHOLE std::size_t jobs_of_sweep(Program& program, const std::string& config);
+PALPATE_WHOLE std::size_t jobs_of_sweep(CommandEnvironment& program, const std::string& config);
 
 inline void add_sweep(CommandLine& line) {
   auto [command, sweep_arguments] =

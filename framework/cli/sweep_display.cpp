@@ -66,7 +66,7 @@ void SweepLine::show(const SweepProgress& progress) {
   print_message(std::string(terminal_ ? kClearLine : "") + line + (terminal_ && !progress.last ? "" : "\n"));
 }
 
-bool compute_jobs(const Program& program, const std::vector<std::size_t>& jobs, std::optional<int> workers,
+bool compute_jobs(const CommandEnvironment& program, const std::vector<std::size_t>& jobs, std::optional<int> workers,
                   const std::function<void(std::size_t job)>& work) {
   const int together = workers.value_or(cores());
   SweepLine line(false);
@@ -102,10 +102,10 @@ std::string values_text(const Sweep& sweep, const Job& job, const char* gap) {
   return out;
 }
 
-void print_failures(const Sweep& sweep, const std::vector<SweepFailure>& failures) {
+void print_failures(const Sweep& sweep, const std::vector<FailedJob>& failures) {
   constexpr std::size_t kMostLines = 20;
   for (std::size_t i = 0; i < failures.size() && i < kMostLines; ++i) {
-    const SweepFailure& one = failures[i];
+    const FailedJob& one = failures[i];
     const Job& job = sweep.jobs[one.job];
     print_out("failed: job {} ({}),{}, attempt {}: {}\n", job.index, job.id, values_text(sweep, job, " "), one.attempts,
               one.reason);

@@ -38,7 +38,7 @@ Sweep read_records(const std::vector<std::string>& words, const std::vector<std:
 
 /// Calls `work` for each of `jobs` in child processes and shows the progress. At most `workers` processes run at a
 /// time; the default is the number of cores. Returns false after an interrupt. Finished work is kept. Throws Error.
-bool compute_jobs(const Program& program, const std::vector<std::size_t>& jobs, std::optional<int> workers,
+bool compute_jobs(const CommandEnvironment& program, const std::vector<std::size_t>& jobs, std::optional<int> workers,
                   const std::function<void(std::size_t job)>& work);
 
 /// Returns a suffix for names of files about the jobs that satisfy `where`: "_where_" and a hash of the condition.
@@ -49,6 +49,6 @@ std::string where_suffix(const std::string& where);
 std::string values_text(const Sweep& sweep, const Job& job, const char* gap);
 
 /// Prints one line per failed job with its keys and its reason. The number of lines is limited.
-void print_failures(const Sweep& sweep, const std::vector<SweepFailure>& failures);
+void print_failures(const Sweep& sweep, const std::vector<FailedJob>& failures);
 
 }  // namespace palpate::cli

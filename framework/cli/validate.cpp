@@ -18,7 +18,7 @@ struct ValidateArguments {
   std::vector<std::string> configs;
 };
 
-int validate(Program& program, const ValidateArguments& arguments) {
+int validate(CommandEnvironment& program, const ValidateArguments& arguments) {
   int bad = 0;
   // All lines are printed at the end. For a sweep, this process may be replaced by palpate-whole, which validates all
   // files again and prints all lines.
@@ -51,7 +51,7 @@ int validate(Program& program, const ValidateArguments& arguments) {
 
 void add_validate(CommandLine& line) {
   auto [command, arguments] = line.add<ValidateArguments>("validate", "Check configs without running them", validate,
-                                                          [](Needs& needs, const ValidateArguments& given) {
+                                                          [](NeededParts& needs, const ValidateArguments& given) {
                                                             for (const std::string& config : given.configs)
                                                               needs.config(config, {}, true);
                                                           });

@@ -12,7 +12,7 @@
 
 namespace palpate::cli {
 
-int watch(Program& program, const WatchArguments& arguments) {
+int watch(CommandEnvironment& program, const WatchArguments& arguments) {
   constexpr int kIdleSeconds = 120;
   // This process computes the watched run a second time, so the run itself has priority. The page of a sweep needs
   // little computing time. It has a higher priority than the page of a run, because the jobs of the sweep occupy all

@@ -12,13 +12,13 @@ struct WatchArguments {
   int port = 0;  ///< 0: any free port
   bool until_left = false;
 };
-PALPATE_WHOLE int watch(Program& program, const WatchArguments& arguments);
+PALPATE_WHOLE int watch(CommandEnvironment& program, const WatchArguments& arguments);
 
 inline void add_watch(CommandLine& line) {
   auto [command, watched] = line.add<WatchArguments>(
       "watch", "Serve a web page that follows a run or sweep while it runs", watch,
-      [](Needs& needs, const WatchArguments& arguments) { needs.whole_and_record(arguments.directory); });
-  command.record("DIR", watched.directory, Wanted::any, "run or sweep");
+      [](NeededParts& needs, const WatchArguments& arguments) { needs.whole_and_record(arguments.directory); });
+  command.record("DIR", watched.directory, RecordKind::any, "run or sweep");
   constexpr int kLastPort = 65535;
   command.argument("--port", watched.port, "N", "port of the web page; default: any free port",
                    {between(1, kLastPort)});

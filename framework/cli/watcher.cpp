@@ -34,12 +34,12 @@ std::string first_line(const Descriptor& from) {
 
 }  // namespace
 
-void start_watcher(const palpate::cli::Program& program, const std::filesystem::path& directory) {
+void start_watcher(const palpate::cli::CommandEnvironment& program, const std::filesystem::path& directory) {
   const std::string whole = program.installation.whole.string();
   std::string said;
   std::optional<Pipe> pipe = open_pipe();
   const Descriptor nothing = above_standard(::open("/dev/null", O_RDONLY | O_CLOEXEC));
-  palpate::Program watch{{whole, "watch", directory.string(), "--until-left"}, whole};
+  palpate::ProgramCall watch{{whole, "watch", directory.string(), "--until-left"}, whole};
   // The watcher must not inherit open files. Otherwise a process that reads the output of this program until its end
   // would also wait for the end of the watcher.
   const bool started =

@@ -23,7 +23,7 @@ int decimals_for(double value, int digits) {
 }
 
 /// Returns the unit for numbers up to `largest` (in SI).
-Scale unit_for(Unit unit, double largest, LengthKind kind) {
+DisplayScale unit_for(Unit unit, double largest, LengthKind kind) {
   if (unit == Unit::metre) {
     const bool nothing = largest < kReadsAsZero;
     if (largest >= (kind == LengthKind::error ? 1.0 : 10.0)) return {"m", 1.0};
@@ -32,13 +32,13 @@ Scale unit_for(Unit unit, double largest, LengthKind kind) {
     return {"cm", 1e-2};
   }
   if (unit == Unit::second && largest < 1.0 && largest >= kReadsAsZero)
-    return largest < 1e-3 ? Scale{"us", 1e-6} : Scale{"ms", 1e-3};
+    return largest < 1e-3 ? DisplayScale{"us", 1e-6} : DisplayScale{"ms", 1e-3};
   return {unit_symbol(unit), 1.0};
 }
 
 }  // namespace
 
-std::string Scale::number(double value) const {
+std::string DisplayScale::number(double value) const {
   if (!std::isfinite(value)) return fmt::format("{}", value);
   const double shown = (!unit.empty() && std::abs(value) < kReadsAsZero) || value == 0.0 ? 0.0 : value / factor;
   if (scientific && shown != 0.0) return fmt::format("{:.{}e}", shown, decimals);
@@ -51,13 +51,13 @@ std::string Scale::number(double value) const {
   return needed > kMostDecimals ? fmt::format("{:.1e}", shown) : fmt::format("{:.{}f}", shown, needed);
 }
 
-std::string Scale::difference(double value) const {
+std::string DisplayScale::difference(double value) const {
   if (scientific) return (value > 0.0 ? "+" : "") + number(value);
   const std::string text = fmt::format("{:+.{}f}", value / factor, decimals);
   return reads_as_zero(text) && std::isfinite(value) ? text.substr(1) : text;
 }
 
-Scale readable_scale(Unit unit, const std::vector<double>& values, int digits, LengthKind kind) {
+DisplayScale readable_scale(Unit unit, const std::vector<double>& values, int digits, LengthKind kind) {
   double largest = 0.0;
   double least = 0.0;
   for (const double value : values) {
@@ -66,7 +66,7 @@ Scale readable_scale(Unit unit, const std::vector<double>& values, int digits, L
     largest = std::max(largest, size);
     least = least == 0.0 ? size : std::min(least, size);
   }
-  Scale scale = unit_for(unit, largest, kind);
+  DisplayScale scale = unit_for(unit, largest, kind);
   if (!(least > 0.0)) return scale;
   constexpr int kMostDecimals = 4;
   constexpr double kMostPlain = 1e10;
@@ -80,15 +80,15 @@ Scale readable_scale(Unit unit, const std::vector<double>& values, int digits, L
   return scale;
 }
 
-Scale usual_scale(Unit unit, LengthKind kind) {
-  Scale scale = unit_for(unit, 0.0, kind);
+DisplayScale usual_scale(Unit unit, LengthKind kind) {
+  DisplayScale scale = unit_for(unit, 0.0, kind);
   scale.decimals = unit == Unit::metre && kind == LengthKind::place ? 2 : 1;
   scale.open = unit == Unit::metre;
   return scale;
 }
 
 std::string readable(double value, Unit unit, int digits, LengthKind kind) {
-  Scale scale = unit_for(unit, std::abs(value), kind);
+  DisplayScale scale = unit_for(unit, std::abs(value), kind);
   if (scale.unit == "cm" &&
       std::abs(value) >= kReadsAsZero) {  // a single position has the unit that gives a short number
     if (std::abs(value) < 0.00995) scale = {"mm", 1e-3};

@@ -24,7 +24,7 @@ namespace palpate {
 enum class LengthKind { error, place };
 
 /// Unit and number of decimals for the numbers of a column, axis or sentence.
-struct Scale {
+struct DisplayScale {
   std::string unit;     ///< "": none
   double factor = 1.0;  ///< SI units per `unit`
   int decimals = 0;
@@ -52,11 +52,12 @@ struct Scale {
 
 /// Returns the scale of a column with these values, in SI units. The smallest number except 0 has `digits` significant
 /// digits.
-Scale readable_scale(Unit unit, const std::vector<double>& values, int digits = 3, LengthKind kind = LengthKind::error);
+DisplayScale readable_scale(Unit unit, const std::vector<double>& values, int digits = 3,
+                            LengthKind kind = LengthKind::error);
 
 /// Returns the scale of a table whose later values are not known yet. It has the usual unit, two decimals for
 /// positions, and one decimal for other quantities. Small lengths are shown with more decimals.
-Scale usual_scale(Unit unit, LengthKind kind = LengthKind::error);
+DisplayScale usual_scale(Unit unit, LengthKind kind = LengthKind::error);
 
 /// Formats a single value in SI units with `digits` significant digits and without trailing zeros, for example "1.57
 /// cm".

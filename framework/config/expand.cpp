@@ -101,11 +101,11 @@ std::vector<Tree> expand_logspace(const std::vector<Bound>& from, const Tree& tr
 
 }  // namespace
 
-std::optional<Call> parse_call(const Tree& value, const std::string& key, const std::vector<std::string>& names,
-                               const std::string& how_to) {
+std::optional<RangeCall> parse_call(const Tree& value, const std::string& key, const std::vector<std::string>& names,
+                                    const std::string& how_to) {
   const auto open = value.text.find('(');
   if (!value.is_scalar() || open == std::string::npos) return std::nullopt;
-  Call call{value.text.substr(0, open), {}};
+  RangeCall call{value.text.substr(0, open), {}};
   if (std::find(names.begin(), names.end(), call.name) == names.end()) return std::nullopt;
   if (value.text.back() != ')') {
     refuse(value, key, "has no closing ')'", fmt::format("inside braces, put it into quotes: \"{}(...)\"", call.name));
@@ -122,7 +122,7 @@ double ContinuousRange::at(double share) const {
 }
 
 std::optional<ContinuousRange> parse_continuous(const Tree& value, const std::string& key) {
-  const std::optional<Call> call = parse_call(value, key, {"uniform", "log_uniform"}, kContinuousHint);
+  const std::optional<RangeCall> call = parse_call(value, key, {"uniform", "log_uniform"}, kContinuousHint);
   if (!call) return std::nullopt;
   const std::vector<Bound>& ends = call->bounds;
   if (ends.size() != 2) refuse(value, key, "does not have two ends", kContinuousHint);
@@ -156,7 +156,7 @@ std::vector<Tree> expand_values(const Tree& value, const std::string& key, Value
   }
   if (value.kind == Tree::Kind::null)
     throw Error(value.place.text(), fmt::format("{}: has no value", key), "write [value, value]");
-  const std::optional<Call> call = parse_call(value, key, {"range", "logspace"}, kHowTo);
+  const std::optional<RangeCall> call = parse_call(value, key, {"range", "logspace"}, kHowTo);
   if (!call) return count.add(1, value.place, key), std::vector<Tree>{value};
   const std::vector<Bound>& parts = call->bounds;
   const bool is_range = call->name == "range";
@@ -167,12 +167,12 @@ std::vector<Tree> expand_values(const Tree& value, const std::string& key, Value
   return is_range ? expand_range(parts, value, key, count) : expand_logspace(parts, value, key, count);
 }
 
-Axis parse_axis(const std::string& text, ValueCount& count) {
+SweepAxis parse_axis(const std::string& text, ValueCount& count) {
   Override whole = parse_override(text);
   const std::string value = text.substr(text.find('=') + 1);
   const std::vector<std::string> parts = split_top(value);
   if (parts.size() == 1) return {whole.path, expand_values(whole.value, whole.path, count), whole.value};
-  Axis axis{whole.path, {}, Tree::list()};
+  SweepAxis axis{whole.path, {}, Tree::list()};
   for (const std::string& part : parts) {
     const Override one = parse_override(whole.path + "=" + boost::trim_copy(part));
     // If there are several parts, a part that is a list is one value: at=[1cm,1cm],[2cm,2cm].

@@ -13,7 +13,7 @@
 namespace palpate {
 
 /// A key that a sweep varies, and its values.
-struct Axis {
+struct SweepAxis {
   std::string key;  ///< dotted path
   std::vector<Tree> values;
   Tree written;  ///< the values as they were written; expand_values() can parse them again
@@ -26,15 +26,15 @@ struct Bound {
 };
 
 /// The parts of a text such as `range(1cm, 5cm)`.
-struct Call {
+struct RangeCall {
   std::string name;
   std::vector<Bound> bounds;
 };
 
 /// Parses `name(...)` for one of `names`. Returns nullopt for any other value. Throws Error, with the hint `how_to`, if
 /// an argument is not a number.
-std::optional<Call> parse_call(const Tree& value, const std::string& key, const std::vector<std::string>& names,
-                               const std::string& how_to);
+std::optional<RangeCall> parse_call(const Tree& value, const std::string& key, const std::vector<std::string>& names,
+                                    const std::string& how_to);
 
 /// A continuous range: `uniform(a, b)`, or `log_uniform(a, b)`, which is uniform in the logarithm.
 struct ContinuousRange {
@@ -76,7 +76,7 @@ std::vector<Tree> expand_values(const Tree& value, const std::string& key, Value
 
 /// Parses KEY=VALUES of `palpate sweep`: `KEY=V1,V2`, `KEY=[V1, V2]`, `KEY=range(0,10)`, `KEY=logspace(1cm,5cm,8)`. If
 /// VALUES has several parts, a part that is a list counts as one value.
-Axis parse_axis(const std::string& text, ValueCount& count);
+SweepAxis parse_axis(const std::string& text, ValueCount& count);
 
 /// Returns the text of a swept value in results.csv.
 std::string value_text(const Tree& value);

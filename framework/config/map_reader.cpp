@@ -121,7 +121,7 @@ const Tree* MapReader::find(const Field& field) {
   return input_.find(field.former_name);
 }
 
-const Tree* MapReader::claim(const Field& field, Missing missing) {
+const Tree* MapReader::claim(const Field& field, MissingFieldMeaning missing) {
   if (!adopted_.empty() && is_known(field.name)) {
     throw Error(where(),
                 fmt::format("{} has an option '{}', and {} has one of the same name", adopted_, field.name, owner()),
@@ -133,8 +133,8 @@ const Tree* MapReader::claim(const Field& field, Missing missing) {
     miss(field.name, {where(), fmt::format("'{}' is missing", name(field)), std::string("set it: ") + field.meaning});
     return nullptr;
   }
-  if (claimed_ == nullptr && complete_ && missing != Missing::of_its_parts)
-    claimed_ = neutral(field, missing == Missing::absent);
+  if (claimed_ == nullptr && complete_ && missing != MissingFieldMeaning::of_its_parts)
+    claimed_ = neutral(field, missing == MissingFieldMeaning::absent);
   return claimed_;
 }
 

@@ -59,10 +59,10 @@ class MapReader : public Fields {
 
   /// What happens if a record lacks a field without a neutral value: it is an error, the field is absent, or its nested
   /// fields are read one by one.
-  enum class Missing { refused, absent, of_its_parts };
+  enum class MissingFieldMeaning { refused, absent, of_its_parts };
   /// Marks a field as known and returns its value; null if the config does not set it. In a record, a missing field has
   /// its neutral value: see resolve().
-  const Tree* claim(const Field& field, Missing missing = Missing::refused);
+  const Tree* claim(const Field& field, MissingFieldMeaning missing = MissingFieldMeaning::refused);
   /// Like claim(), for a list; its neutral value is the empty list.
   const Tree* claim_list(const Field& field);
 

@@ -50,7 +50,7 @@ class Resolver final : public MapReader {
   }
 
   void real(std::optional<double>& value, const Field& field) override {
-    if (const Tree* tree = claim(field, Missing::absent))
+    if (const Tree* tree = claim(field, MissingFieldMeaning::absent))
       value = is_none(*tree) ? std::nullopt : std::optional(quantity(*tree, field));
     if (!value) return note_absent(field);
     write(field, write_quantity(*value, field.unit));
@@ -94,7 +94,7 @@ class Resolver final : public MapReader {
   }
 
   void integer(std::optional<std::int64_t>& value, const Field& field) override {
-    if (const Tree* tree = claim(field, Missing::absent))
+    if (const Tree* tree = claim(field, MissingFieldMeaning::absent))
       value = is_none(*tree) ? std::nullopt : std::optional(whole(*tree, field));
     if (!value) return note_absent(field);
     write(field, std::to_string(*value));
@@ -134,11 +134,11 @@ class Resolver final : public MapReader {
   }
 
   void section(Options& options, const Field& field) override {
-    output_.at(field.name) = read_group(options, claim(field, Missing::of_its_parts), field, field.name);
+    output_.at(field.name) = read_group(options, claim(field, MissingFieldMeaning::of_its_parts), field, field.name);
   }
 
   void section(bool& present, Options& options, const Field& field) override {
-    const Tree* tree = claim(field, Missing::absent);
+    const Tree* tree = claim(field, MissingFieldMeaning::absent);
     if (tree != nullptr && tree->kind == Tree::Kind::null) {
       throw Error(tree->place.text(), fmt::format("{} has no value", name(field)),
                   "write {} for its defaults, or none");

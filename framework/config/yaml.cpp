@@ -53,11 +53,11 @@ class SecondDocument : public YAML::Exception {
 };
 
 /// Builds the tree of a text from the events of the parser.
-class Reader final : public YAML::EventHandler {
+class YamlReader final : public YAML::EventHandler {
  public:
   /// `lines`: whether source locations have line numbers. Line numbers are meaningless for an argument of the command
   /// line.
-  Reader(const std::string& file, bool lines) : file_(std::make_shared<const std::string>(file)), lines_(lines) {
+  YamlReader(const std::string& file, bool lines) : file_(std::make_shared<const std::string>(file)), lines_(lines) {
     tree_.place.file = file_;
   }
 
@@ -103,7 +103,7 @@ class Reader final : public YAML::EventHandler {
  private:
   /// A list or map that receives the next values. Its address is stable, because only the innermost open list or map
   /// grows.
-  struct Open {
+  struct OpenContainer {
     Tree* tree;  ///< null after an error
     YAML::anchor_t anchor;
     bool has_key;  ///< whether the tree is a map and the next value belongs to its last key
@@ -195,7 +195,7 @@ class Reader final : public YAML::EventHandler {
   int values_ = 0;
   std::size_t text_bytes_ = 0;  ///< total bytes of all texts
   Tree tree_;
-  std::vector<Open> open_;  ///< open lists and maps, the innermost last
+  std::vector<OpenContainer> open_;  ///< open lists and maps, the innermost last
   std::map<YAML::anchor_t, Tree> anchors_;
   std::optional<Error> refused_;
 };
@@ -229,7 +229,7 @@ Tree parse_yaml(const std::string& text, const std::string& file) {
     throw Error(place_in(file, text, valid), "not UTF-8", "save the file as UTF-8");
   }
   try {
-    Tree tree = Reader(file, true).read(text);
+    Tree tree = YamlReader(file, true).read(text);
     if (tree.kind == Tree::Kind::null) tree.kind = Tree::Kind::map;
     return tree;
   } catch (
@@ -246,26 +246,26 @@ Tree parse_yaml(const std::string& text, const std::string& file) {
   }
 }
 
-Tree read_yaml(const std::filesystem::path& path, Origin origin) {
+Tree read_yaml(const std::filesystem::path& path, FileOrigin origin) {
   const std::string name = path.lexically_normal().string();
-  const Reading reading = read_bounded(path, kMostConfigBytes, origin);
+  const FileReading reading = read_bounded(path, kMostConfigBytes, origin);
   const int reason = reading.reason.value();
   std::error_code none;
   switch (reading.kind) {
-    case Reading::Kind::whole:
+    case FileReading::Kind::whole:
       return parse_yaml(reading.text, name);
-    case Reading::Kind::absent:
+    case FileReading::Kind::absent:
       throw Error(name, "no such file", similar_file(path));
-    case Reading::Kind::not_regular:
+    case FileReading::Kind::not_regular:
       throw Error(name, "not a regular file", "name a YAML file");
-    case Reading::Kind::too_large:
+    case FileReading::Kind::too_large:
       throw Error(name, "too large for a config", "at most 1 MiB");
-    case Reading::Kind::failed:
+    case FileReading::Kind::failed:
       if (reason == EIO) break;
       throw Error(
           name, "cannot be read",
           std::filesystem::exists(path, none) ? "check its permissions" : "check the permissions of its folder");
-    case Reading::Kind::link:
+    case FileReading::Kind::link:
       break;
   }
   const auto [words, remedy] = words_of(reading, kMostConfigBytes);
@@ -288,7 +288,7 @@ Tree parse_value(const std::string& text, const std::string& file) {
   const bool is_block = !text.empty() && (text.front() == '>' || text.front() == '|');
   if (utf8_prefix(text) < text.size()) throw Error(file, "not UTF-8", "write it in UTF-8");
   try {
-    if (!is_block) return Reader(file, false).read(text);
+    if (!is_block) return YamlReader(file, false).read(text);
   } catch (const YAML::Exception&) {  // invalid YAML is a text: see below
   }
   Tree tree = Tree::scalar(text, true);

@@ -19,7 +19,7 @@ Tree parse_yaml(const std::string& text, const std::string& file);
 
 /// Reads and parses a regular file of at most 1 MiB. A file of a record must not be a link. Throws Error if the file
 /// cannot be read or parsed.
-Tree read_yaml(const std::filesystem::path& path, Origin origin = Origin::user);
+Tree read_yaml(const std::filesystem::path& path, FileOrigin origin = FileOrigin::user);
 
 /// Throws Error, with the location `file`, if read_yaml() would reject the text that to_yaml() writes for this config.
 void check_readable(const Tree& config, const std::string& file);

@@ -34,7 +34,7 @@ struct ExperimentSetup {
 };
 
 /// The readers of a run, and pairs of a model that is built and a reader that needs it.
-struct RunPlan {
+struct ModelPlan {
   ReadPlan read;
   std::vector<PlannedModel> models;
 };
@@ -92,7 +92,7 @@ class Experiment final {
   /// model.
   Preview preview(const TapRecord& tap) const;
   /// Returns the readers of the run, and the models that they need.
-  const RunPlan& plan() const { return plan_; }
+  const ModelPlan& plan() const { return plan_; }
 
   Belief& belief() { return *belief_; }
   const Belief& belief() const { return *belief_; }
@@ -129,7 +129,7 @@ class Experiment final {
   std::shared_ptr<Backend> backend_;
   TapSelector selector_;
   std::optional<MotionSelector> motions_;  ///< only if the backend has several motions
-  RunPlan plan_;
+  ModelPlan plan_;
   RunMonitor monitor_;
   std::optional<TapLine> previous_;  ///< line of the previous tap
   std::string unreached_;            ///< drawn lines that the backend rejected; see TapRecord::unreached

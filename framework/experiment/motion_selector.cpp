@@ -27,7 +27,7 @@ MotionSelector::MotionSelector(std::shared_ptr<const Motions> motions, double de
     : motions_(std::move(motions)), desk_(desk), shown_(static_cast<std::size_t>(motions_->count())) {}
 
 double MotionSelector::deviation(int motion) const {
-  const Shown& shown = shown_[static_cast<std::size_t>(motion)];
+  const MotionStatistics& shown = shown_[static_cast<std::size_t>(motion)];
   const double idea = motions_->deviation(motion);
   return std::sqrt((kPriorTaps * idea * idea + shown.squares) / (kPriorTaps + shown.on_desk));
 }
@@ -55,7 +55,7 @@ void MotionSelector::choose(const Belief& belief, TapRecord& tap) const {
   const double whether = bits(p) + bits(1.0 - p);
   double most = -1.0;
   for (request.motion = 0; request.motion < motions_->count(); ++request.motion) {
-    const Shown& shown = shown_[static_cast<std::size_t>(request.motion)];
+    const MotionStatistics& shown = shown_[static_cast<std::size_t>(request.motion)];
     const double seconds = p * motions_->seconds(request, std::max(desk_, expected.height)) +
                            (1.0 - p) * motions_->seconds(request, desk_) + shown.late / (kPriorTaps + shown.contacts);
     const double contacts = (kPriorTaps * kPriorContacts + shown.contacts) / (kPriorTaps + shown.taps);
@@ -78,7 +78,7 @@ void MotionSelector::take_in(const TapRecord& tap, const Belief& belief) {
         "the record is damaged", Error::Kind::run);
   }
   motion_of_tap_.push_back(motion);
-  Shown& shown = shown_[static_cast<std::size_t>(motion)];
+  MotionStatistics& shown = shown_[static_cast<std::size_t>(motion)];
   ++shown.taps;
   if (tap.is_contact()) {
     ++shown.contacts;
@@ -88,14 +88,14 @@ void MotionSelector::take_in(const TapRecord& tap, const Belief& belief) {
 }
 
 void MotionSelector::read_desk(const Belief& belief) {
-  for (Shown& shown : shown_) {
+  for (MotionStatistics& shown : shown_) {
     shown.squares = 0.0;
     shown.on_desk = 0;
   }
   for (const TapReading& one : belief.taps().readings) {
     const double height = one.position.z() - desk_;
     if (one.on_object || std::abs(height) > kMostOffDesk) continue;
-    Shown& shown = shown_[static_cast<std::size_t>(motion_of_tap_[static_cast<std::size_t>(one.tap - 1)])];
+    MotionStatistics& shown = shown_[static_cast<std::size_t>(motion_of_tap_[static_cast<std::size_t>(one.tap - 1)])];
     shown.squares += height * height;
     ++shown.on_desk;
   }

@@ -46,7 +46,7 @@ class MotionSelector {
 
  private:
   /// Statistics of the taps of one motion.
-  struct Shown {
+  struct MotionStatistics {
     int taps = 0;
     int contacts = 0;
     double late = 0.0;     ///< sum over all contacts of the measured minus the expected duration, seconds
@@ -58,7 +58,7 @@ class MotionSelector {
 
   std::shared_ptr<const Motions> motions_;
   double desk_;
-  std::vector<Shown> shown_;
+  std::vector<MotionStatistics> shown_;
   std::vector<int> motion_of_tap_;
 };
 

@@ -46,21 +46,21 @@ void for_allowed(const Eigen::VectorXd& scores, const Allowed& allowed, const Wo
 }
 
 /// A candidate and its score.
-struct Scored {
+struct ScoredCandidate {
   int candidate = -1;  ///< -1: none
   double score = -std::numeric_limits<double>::infinity();
-  bool before(const Scored& other) const {
+  bool before(const ScoredCandidate& other) const {
     return score > other.score || (score == other.score && candidate < other.candidate);
   }
 };
 
 /// Returns the two allowed candidates with the highest scores; of equal scores, the lower index is first.
-std::array<Scored, 2> find_best_two(const Eigen::VectorXd& scores, const Allowed& allowed) {
-  Scored best, second;
+std::array<ScoredCandidate, 2> find_best_two(const Eigen::VectorXd& scores, const Allowed& allowed) {
+  ScoredCandidate best, second;
   for_allowed(
       scores, allowed,
       [&](double score, int i) {
-        return Scored{i, score}.before(second);
+        return ScoredCandidate{i, score}.before(second);
       },
       [&](int i) {
         second = {i, scores(i)};
@@ -98,7 +98,7 @@ Pick pick_best(const Eigen::VectorXd& scores, const Allowed& allowed, double sca
         });
   }
   // The runner-up is the second best candidate, or the best one if the second best was chosen.
-  const Scored& other = out.candidate == best.candidate ? second : best;
+  const ScoredCandidate& other = out.candidate == best.candidate ? second : best;
   out.score = scores(out.candidate);
   out.runner_up = other.candidate;
   if (other.candidate >= 0) out.runner_up_score = other.score;

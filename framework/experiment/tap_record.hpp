@@ -74,7 +74,7 @@ inline bool is_refused(const TapResult& result) {
 }
 
 /// A contact whose label has changed since its tap.
-struct Relabelled {
+struct RelabelledContact {
   int tap = 0;
   bool on_object = false;  ///< current label
 };
@@ -99,7 +99,7 @@ struct RunResult {
   int no_contact_taps = 0;  ///< only for lines that are not from above
   int failed_taps = 0;
   std::optional<int> first_hit_tap;
-  std::vector<Relabelled> relabelled;
+  std::vector<RelabelledContact> relabelled;
   std::optional<std::vector<ObjectResult>> objects;  ///< in the order of the scene; nullopt if the truth is not known
   double robot_seconds = 0.0;
   BeliefState state;

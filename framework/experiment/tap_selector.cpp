@@ -56,8 +56,9 @@ std::optional<int> TapSelector::second_look(const Belief& belief) const {
   for (const TapReading& one : belief.taps().readings) {
     const int candidate = taps_[static_cast<std::size_t>(one.tap - 1)].candidate;
     if (!one.on_object || one.outlier_probability > kSurelyOutlier || !allowed_(candidate)) continue;
-    const auto contacts = std::count_if(
-        taps_.begin(), taps_.end(), [&](const Tapped& tap) { return tap.is_contact && tap.candidate == candidate; });
+    const auto contacts = std::count_if(taps_.begin(), taps_.end(), [&](const TappedCandidate& tap) {
+      return tap.is_contact && tap.candidate == candidate;
+    });
     if (contacts == 1) return candidate;
   }
   return std::nullopt;
@@ -66,7 +67,7 @@ std::optional<int> TapSelector::second_look(const Belief& belief) const {
 void TapSelector::allow(const Belief& belief) {
   allowed_ = Allowed::Constant(belief.candidates().size(), true);
   if (!belief.candidates().fixed) return;
-  for (const Tapped& tap : taps_) {
+  for (const TappedCandidate& tap : taps_) {
     if (!tap.is_contact) allowed_(tap.candidate) = false;
   }
   if (options_.choice.repeat == ChoiceOptions::Repeat::allow) return;

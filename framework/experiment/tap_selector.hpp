@@ -68,11 +68,11 @@ class TapSelector {
   std::vector<int> initial_;            ///< candidates of a design with a fixed count
   std::optional<SearchDesign> search_;  ///< the design `search`
   Eigen::VectorXd scores_;
-  struct Tapped {
+  struct TappedCandidate {
     int candidate;
     bool is_contact;
   };
-  std::vector<Tapped> taps_;
+  std::vector<TappedCandidate> taps_;
   Allowed allowed_;
 };
 

@@ -54,7 +54,7 @@ class AxisCovariances {
 /// Part of the covariance matrix K along an axis: k(h, h') + sign * k(h, mirror image of h') for h and h' among the
 /// first `count` positions. With the sign 1 this is the even part, with -1 the odd part. With 0 and all positions, it
 /// is K itself.
-struct Part {
+struct SymmetryPart {
   const AxisCovariances& covariances;
   Eigen::Index count;
   double sign;
@@ -107,7 +107,7 @@ struct Part {
 };
 
 /// Returns the even and the odd part if there is symmetry, else the whole matrix as one part.
-std::vector<Part> parts_of(const AxisCovariances& covariances) {
+std::vector<SymmetryPart> parts_of(const AxisCovariances& covariances) {
   if (!covariances.is_mirrored()) return {{covariances, covariances.size(), 0.0}};
   const Eigen::Index half = (covariances.size() + 1) / 2;
   return {{covariances, half, 1.0}, {covariances, half, -1.0}};
@@ -124,10 +124,10 @@ double largest_variance(const AxisCovariances& covariances) {
 AxisBasis axis_basis(const Kernel& kernel, int axis, const Eigen::VectorXd& positions, double tolerance) {
   const AxisCovariances covariances(kernel, axis, positions);
   const double enough = tolerance * largest_variance(covariances);
-  const std::vector<Part> parts = parts_of(covariances);
+  const std::vector<SymmetryPart> parts = parts_of(covariances);
   AxisBasis out;
   out.mirrored = parts.size() > 1;
-  for (const Part& part : parts) {
+  for (const SymmetryPart& part : parts) {
     const Eigen::MatrixXd own = part.orthonormal(part.pivoted(enough, part.count));
     out.directions.conservativeResize(covariances.size(), out.directions.cols() + own.cols());
     out.directions.rightCols(own.cols()) = own;
@@ -140,7 +140,8 @@ int axis_rank(const Kernel& kernel, int axis, const Eigen::VectorXd& positions, 
   const AxisCovariances covariances(kernel, axis, positions);
   const double enough = tolerance * largest_variance(covariances);
   int rank = 0;
-  for (const Part& part : parts_of(covariances)) rank += static_cast<int>(part.pivoted(enough, most - rank).cols());
+  for (const SymmetryPart& part : parts_of(covariances))
+    rank += static_cast<int>(part.pivoted(enough, most - rank).cols());
   return rank;
 }
 

@@ -11,9 +11,9 @@ constexpr double kMostReserved = 1.0 * (1 << 27);
 constexpr int kBlocksPerCall = 4;
 constexpr Eigen::Index kCandidatesPerCall = Eigen::Index{kBlocksPerCall} * loops::kBlock;
 
-class Dense final : public Engine {
+class DenseEngine final : public Engine {
  public:
-  Dense(const std::shared_ptr<Workers>& workers, const Kernel& kernel, const CandidateGrid& candidates)
+  DenseEngine(const std::shared_ptr<Workers>& workers, const Kernel& kernel, const CandidateGrid& candidates)
       : Engine("dense", workers, kernel, candidates, Tiling::blocks(candidates.size())),
         rows_(maps_.tiling().strips() * loops::kBlock, loops::kBlock, loops::kBlock) {
     for (int i = 0; i < workers->threads(); ++i) covariances_.emplace_back(kCandidatesPerCall);
@@ -55,7 +55,7 @@ class Dense final : public Engine {
 
 std::unique_ptr<Engine> make_dense(const std::shared_ptr<Workers>& workers, const Kernel& kernel,
                                    const CandidateGrid& candidates) {
-  return std::make_unique<Dense>(workers, kernel, candidates);
+  return std::make_unique<DenseEngine>(workers, kernel, candidates);
 }
 
 }  // namespace palpate

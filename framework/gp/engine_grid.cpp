@@ -10,9 +10,9 @@ using loops::kLine;
 /// Each worker takes a whole group at a time.
 constexpr int kGroup = 4;
 
-class Grid final : public Engine {
+class GridEngine final : public Engine {
  public:
-  Grid(const std::shared_ptr<Workers>& workers, const Kernel& kernel, const CandidateGrid& candidates)
+  GridEngine(const std::shared_ptr<Workers>& workers, const Kernel& kernel, const CandidateGrid& candidates)
       : Engine("grid", workers, kernel, candidates, Tiling::grid(candidates)),
         along_x_(candidates.columns, loops::kPanelLines * kLine, kLine),
         along_y_(candidates.rows, loops::kStripRows, loops::kStripRows),
@@ -79,7 +79,7 @@ class Grid final : public Engine {
 
 std::unique_ptr<Engine> make_grid(const std::shared_ptr<Workers>& workers, const Kernel& kernel,
                                   const CandidateGrid& candidates) {
-  return std::make_unique<Grid>(workers, kernel, candidates);
+  return std::make_unique<GridEngine>(workers, kernel, candidates);
 }
 
 }  // namespace palpate

@@ -13,7 +13,7 @@ constexpr int kRows = loops::kStripRows;
 constexpr std::ptrdiff_t kTile = std::ptrdiff_t{kRows} * loops::kPanelLines * kLine;  ///< numbers in a full tile
 
 /// One axis of the grid: the basis of its covariance matrix, and the newest tap in coordinates of this basis.
-struct Axis {
+struct BasisAxis {
   const Eigen::VectorXd& positions;
   AxisBasis basis;
   Eigen::VectorXd covariance;   ///< covariances of the newest tap; after take(), their part outside of the basis
@@ -21,7 +21,7 @@ struct Axis {
   double largest = 0.0;         ///< largest covariance of the newest tap
   double residual = 0.0;        ///< largest part of these covariances outside of the span of the basis
 
-  Axis(const Kernel& kernel, int axis, const Eigen::VectorXd& along, double tolerance)
+  BasisAxis(const Kernel& kernel, int axis, const Eigen::VectorXd& along, double tolerance)
       : positions(along),
         basis(axis_basis(kernel, axis, along, tolerance)),
         covariance(along.size()),
@@ -37,10 +37,10 @@ struct Axis {
 };
 
 /// Computes v = U_y S U_x^T with S = P_y^T diag(c) P_x; see engine.hpp. The product with U_x^T takes most of the time.
-class Lowrank final : public Engine {
+class LowrankEngine final : public Engine {
  public:
-  Lowrank(const std::shared_ptr<Workers>& workers, const Kernel& kernel, const CandidateGrid& candidates, Axis x,
-          Axis y)
+  LowrankEngine(const std::shared_ptr<Workers>& workers, const Kernel& kernel, const CandidateGrid& candidates,
+                BasisAxis x, BasisAxis y)
       : Engine("lowrank", workers, kernel, candidates,
                x.basis.mirrored ? Tiling::mirrored_grid(candidates) : Tiling::grid(candidates)),
         x_(std::move(x)),
@@ -84,7 +84,7 @@ class Lowrank final : public Engine {
     workers_->for_each(maps_.tiling().strips(), [&](int strip, int worker) {
       double* const a = a_[static_cast<std::size_t>(worker)].data();
       gather(strip, a);
-      const loops::Product product{a, 0, 1, basis_x_.panel(0), basis_x_.stride(), basis_x_.rows(), lines};
+      const loops::StripProduct product{a, 0, 1, basis_x_.panel(0), basis_x_.stride(), basis_x_.rows(), lines};
       const loops::Update update = maps_.update(strip, row.coefficients);
       if (mirror > 0) {
         loops::absorb_mirrored({product, x_.basis.even, mirror}, update);
@@ -161,8 +161,8 @@ class Lowrank final : public Engine {
     }
   }
 
-  Axis x_;
-  Axis y_;
+  BasisAxis x_;
+  BasisAxis y_;
   Eigen::VectorXd errors_;  ///< errors of covariances: one per tap, then reserved memory
   int reserved_ = 0;
   loops::Panels in_x_;                  ///< P_x, one row per tap
@@ -180,8 +180,8 @@ class Lowrank final : public Engine {
 
 std::unique_ptr<Engine> make_lowrank(const std::shared_ptr<Workers>& workers, const Kernel& kernel,
                                      const CandidateGrid& candidates, double tolerance) {
-  return std::make_unique<Lowrank>(workers, kernel, candidates, Axis(kernel, 0, candidates.xs, tolerance),
-                                   Axis(kernel, 1, candidates.ys, tolerance));
+  return std::make_unique<LowrankEngine>(workers, kernel, candidates, BasisAxis(kernel, 0, candidates.xs, tolerance),
+                                         BasisAxis(kernel, 1, candidates.ys, tolerance));
 }
 
 }  // namespace palpate

@@ -53,7 +53,7 @@ void Factor::inverse_row(int i, VectorOut out) {
   out(i) = last;
 }
 
-void Factor::update(Extreme& extreme, bool largest) const {
+void Factor::update(SingularPair& extreme, bool largest) const {
   const int n = size_ - 1;
   const double pivot = this->pivot(n);
   if (n == 0) {

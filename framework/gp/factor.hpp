@@ -43,11 +43,11 @@ class Factor {
 
  private:
   /// Approximate singular vector x of L with |x| = 1, and the value |L x|^2.
-  struct Extreme {
+  struct SingularPair {
     Eigen::VectorXd vector;
     double value = 0.0;
   };
-  void update(Extreme& extreme, bool largest) const;
+  void update(SingularPair& extreme, bool largest) const;
   const double* packed(int i) const { return rows_.data() + loops::packed_row(i); }
 
   int size_ = 0;
@@ -55,8 +55,8 @@ class Factor {
   loops::AlignedArray rows_;     ///< packed: see loops.hpp
   loops::AlignedArray scratch_;  ///< aligned memory of one vector
   double log_determinant_ = 0.0;
-  Extreme largest_;
-  Extreme smallest_;
+  SingularPair largest_;
+  SingularPair smallest_;
 };
 
 }  // namespace palpate

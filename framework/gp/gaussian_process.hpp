@@ -93,7 +93,7 @@ class GaussianProcess {
   }
   /// Sets `out` to the posterior variance without noise, relative to the prior variance of each candidate, in [0, 1].
   void read_relative_variance(Eigen::VectorXd& out) const { maps().read_relative_variance(out); }
-  EngineState engine() const { return maps().engine(); }
+  EngineReport engine() const { return maps().engine(); }
   /// Returns the number of candidates whose variance is outside of [0, prior] because of rounding. read_variance() sets
   /// these variances to the bounds.
   int variances_clamped() const { return maps().variances_clamped(); }

@@ -46,7 +46,7 @@ HWY_INLINE void accumulate(const double* a, const double* b, int b_stride, int d
 }
 
 /// Receives a tile of registers and stores it. `cell`: first cell of the tile; `width`: distance between its rows.
-struct Store {
+struct StoreSink {
   double* c;
   template <int kRows, int kVectors>
   HWY_INLINE void take(const Vector (&v)[kRows][kVectors], std::ptrdiff_t cell, int width) const {
@@ -59,7 +59,7 @@ struct Store {
 };
 
 /// Receives a tile of v and updates the maps.
-struct Absorb {
+struct AbsorbSink {
   const Update update;  ///< a copy, so that the compiler need not load its members again after each store
 
   template <int kRows, int kVectors>
@@ -90,8 +90,8 @@ struct Absorb {
 constexpr int vectors_of(int all) { return all % kTileVectors == 0 ? kTileVectors : (all % 2 == 0 ? 2 : 1); }
 
 /// Tiles of a product, each computed as several tiles of registers.
-struct Plain {
-  const Product& product;
+struct PlainTiles {
+  const StripProduct& product;
   std::ptrdiff_t strip_size() const { return static_cast<std::ptrdiff_t>(product.lines) * kLine * kStripRows; }
 
   template <int kLines, class Sink>
@@ -110,10 +110,10 @@ struct Plain {
 
 /// Tiles of a product with mirror images. A tile of registers has half of the rows, because each cell has two sums,
 /// even and odd.
-struct Mirrored {
+struct MirroredTiles {
   const MirroredProduct& whole;
-  const Product& product = whole.half;
-  std::ptrdiff_t strip_size() const { return Plain{product}.strip_size() + whole.mirror; }
+  const StripProduct& product = whole.half;
+  std::ptrdiff_t strip_size() const { return PlainTiles{product}.strip_size() + whole.mirror; }
 
   template <int kLines, class Sink>
   HWY_INLINE void tile(const double* a, const double* b, std::ptrdiff_t cell, const Sink& sink) const {
@@ -149,7 +149,7 @@ struct Mirrored {
 /// every panel.
 template <class Tiles, class Sink>
 HWY_INLINE void strips(const Tiles& tiles, const Sink& sink) {
-  const Product& product = tiles.product;
+  const StripProduct& product = tiles.product;
   const int panels = (product.lines + kPanelLines - 1) / kPanelLines;
   const double* b = product.b;
   for (int panel = 0; panel < panels; ++panel) {
@@ -173,18 +173,20 @@ HWY_INLINE void strips(const Tiles& tiles, const Sink& sink) {
   }
 }
 
-void multiply(const Product& product, double* c) { strips(Plain{product}, Store{c}); }
+void multiply(const StripProduct& product, double* c) { strips(PlainTiles{product}, StoreSink{c}); }
 
-void absorb_product(const Product& product, const Update& update) { strips(Plain{product}, Absorb{update}); }
+void absorb_product(const StripProduct& product, const Update& update) {
+  strips(PlainTiles{product}, AbsorbSink{update});
+}
 
 void absorb_mirrored(const MirroredProduct& product, const Update& update) {
-  strips(Mirrored{product}, Absorb{update});
+  strips(MirroredTiles{product}, AbsorbSink{update});
 }
 
 void absorb_dense(const DenseRow& row, const Update& update) {
   constexpr int kTogether = kTileRows * kTileVectors;
   double* const v = row.rows + static_cast<std::ptrdiff_t>(row.depth) * kBlock;
-  const Absorb sink{update};
+  const AbsorbSink sink{update};
   const Vector share = all(1.0 / row.pivot);
   for (int cell = 0; cell < kBlock; cell += kTogether * kLanes) {
     Vector left[1][kTogether];
@@ -208,7 +210,7 @@ void absorb_dense(const DenseRow& row, const Update& update) {
 /// Copies rows of cells. Rows of cells are padded to cache lines, rows of the result are not. So the last vector of a
 /// row may overlap the vector before it.
 template <bool kMirrored>
-HWY_INLINE void read_rows(const Cells& cells, const Reading& reading) {
+HWY_INLINE void read_rows(const CellCopy& cells, const MapTransform& reading) {
   const Vector least = all(reading.least);
   const Vector most = all(reading.most);
   const Vector scale = all(reading.scale);
@@ -241,7 +243,7 @@ HWY_INLINE void read_rows(const Cells& cells, const Reading& reading) {
   }
 }
 
-void read(const Cells& cells, const Reading& reading) {
+void read(const CellCopy& cells, const MapTransform& reading) {
   cells.mirrored ? read_rows<true>(cells, reading) : read_rows<false>(cells, reading);
 }
 
@@ -334,9 +336,11 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace palpate::loops {
 
-void multiply(const Product& product, double* c) { PALPATE_DISPATCH(multiply)(product, c); }
+void multiply(const StripProduct& product, double* c) { PALPATE_DISPATCH(multiply)(product, c); }
 
-void absorb_product(const Product& product, const Update& update) { PALPATE_DISPATCH(absorb_product)(product, update); }
+void absorb_product(const StripProduct& product, const Update& update) {
+  PALPATE_DISPATCH(absorb_product)(product, update);
+}
 
 void absorb_mirrored(const MirroredProduct& product, const Update& update) {
   PALPATE_DISPATCH(absorb_mirrored)(product, update);
@@ -344,7 +348,7 @@ void absorb_mirrored(const MirroredProduct& product, const Update& update) {
 
 void absorb_dense(const DenseRow& row, const Update& update) { PALPATE_DISPATCH(absorb_dense)(row, update); }
 
-void read(const Cells& cells, const Reading& reading) { PALPATE_DISPATCH(read)(cells, reading); }
+void read(const CellCopy& cells, const MapTransform& reading) { PALPATE_DISPATCH(read)(cells, reading); }
 
 void highest(const double* from, int count, double* out) { PALPATE_DISPATCH(highest)(from, count, out); }
 

@@ -34,7 +34,7 @@ struct Update {
 /// same for all strips. A is stored by columns of 8 numbers. B is divided into panels with a width of kPanelLines cache
 /// lines, and each panel is stored by rows; the last panel may be narrower. C of a strip is a sequence of tiles, one
 /// per panel, and each tile is stored by rows.
-struct Product {
+struct StripProduct {
   const double* a;
   std::size_t a_stride;  ///< distance between the A of consecutive strips, in numbers
   int strips;
@@ -50,7 +50,7 @@ struct Product {
 /// half of the multiplications. The cells of a tile's mirror image are `mirror` cells after the tile, in the same
 /// order.
 struct MirroredProduct {
-  Product half;
+  StripProduct half;
   int even;
   std::ptrdiff_t mirror;
 };
@@ -68,7 +68,7 @@ struct DenseRow {
 /// Transformation of the numbers of a map: each number is bounded to [least, most], multiplied by `scale`, and
 /// increased by `offset`. The product is rounded before the addition, so that all instruction sets give the same
 /// result.
-struct Reading {
+struct MapTransform {
   double least;
   double most;
   double scale;
@@ -79,7 +79,7 @@ struct Reading {
 /// the distance `width`, and are copied to `to` with the distance `columns`. Each source row begins at a cache line. If
 /// `mirrored` is true, `to` is the last number of its row, and the rows are written backwards. `to` need not be
 /// aligned.
-struct Cells {
+struct CellCopy {
   const double* from;
   std::ptrdiff_t width;
   double* to;
@@ -90,12 +90,12 @@ struct Cells {
 };
 
 /// Computes C = A B and stores it at `c`.
-void multiply(const Product& product, double* c);
+void multiply(const StripProduct& product, double* c);
 // Compute the new row v of V (see engine.hpp) and update the maps. Only absorb_dense() stores v.
-void absorb_product(const Product& product, const Update& update);
+void absorb_product(const StripProduct& product, const Update& update);
 void absorb_mirrored(const MirroredProduct& product, const Update& update);
 void absorb_dense(const DenseRow& row, const Update& update);
-void read(const Cells& cells, const Reading& reading);
+void read(const CellCopy& cells, const MapTransform& reading);
 /// Computes `count` maxima: out_i is the largest of the kScores numbers that begin at `from` + i * kScores. No number
 /// may be NaN. The pointers need not be aligned.
 void highest(const double* from, int count, double* out);

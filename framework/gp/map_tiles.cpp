@@ -76,7 +76,7 @@ loops::Update Maps::update(int strip, const double* coefficients) {
   return out;
 }
 
-void Maps::read(const loops::AlignedArray& map, const loops::Reading& reading, double* out) const {
+void Maps::read(const loops::AlignedArray& map, const loops::MapTransform& reading, double* out) const {
   workers_->for_each(tiling_.strips(), [&](int strip, int) {
     tiling_.for_blocks(strip, [&](const MapBlock& block) {
       loops::read({map.data() + block.cell, block.width, out + block.candidate, block.columns, block.rows, block.count,
@@ -88,11 +88,13 @@ void Maps::read(const loops::AlignedArray& map, const loops::Reading& reading, d
 
 // `out` is a view (Eigen::Ref), so it is passed by value, although the function writes to its data.
 // NOLINTNEXTLINE(performance-unnecessary-value-param)
-void Maps::read_mean(int k, const loops::Reading& reading, VectorOut out) const {
+void Maps::read_mean(int k, const loops::MapTransform& reading, VectorOut out) const {
   read(mean_[static_cast<std::size_t>(k)], reading, out.data());
 }
 
 // NOLINTNEXTLINE(performance-unnecessary-value-param)
-void Maps::read_variance(const loops::Reading& reading, VectorOut out) const { read(variance_, reading, out.data()); }
+void Maps::read_variance(const loops::MapTransform& reading, VectorOut out) const {
+  read(variance_, reading, out.data());
+}
 
 }  // namespace palpate

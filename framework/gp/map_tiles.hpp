@@ -36,7 +36,7 @@ class Tiling {
  public:
   /// For candidates at any positions. Each strip is one tile of kBlock consecutive candidates.
   static Tiling blocks(int candidates);
-  /// For a product grid. Each strip has loops::kStripRows rows of the grid and the tiles of loops::Product.
+  /// For a product grid. Each strip has loops::kStripRows rows of the grid and the tiles of loops::StripProduct.
   static Tiling grid(const CandidateGrid& candidates);
   /// For a product grid, with the tiles of loops::MirroredProduct: columns of the left half of the grid, and their
   /// mirror images in the right half.
@@ -99,13 +99,13 @@ class Maps {
   loops::Update update(int strip, const double* coefficients);
 
   /// Copy the mean k, or the variance, at all candidates to `out`, transformed by `reading`.
-  void read_mean(int k, const loops::Reading& reading, VectorOut out) const;
-  void read_variance(const loops::Reading& reading, VectorOut out) const;
+  void read_mean(int k, const loops::MapTransform& reading, VectorOut out) const;
+  void read_variance(const loops::MapTransform& reading, VectorOut out) const;
 
   const Tiling& tiling() const { return tiling_; }
 
  private:
-  void read(const loops::AlignedArray& map, const loops::Reading& reading, double* out) const;
+  void read(const loops::AlignedArray& map, const loops::MapTransform& reading, double* out) const;
 
   Tiling tiling_;
   std::shared_ptr<Workers> workers_;

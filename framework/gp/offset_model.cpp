@@ -83,7 +83,7 @@ void OffsetModel::search_from_below(std::vector<bool>& left) const {
 
 bool OffsetModel::at_a_rim(const Target& place) const {
   for (std::size_t i = 0; i < touched_.size(); ++i) {
-    const Touched& one = touched_[i];
+    const OffsetContact& one = touched_[i];
     if (above_[i] && one.excess < kRim && math::hypot(one.place.x - place.x, one.place.y - place.y) < kBeside)
       return true;
   }
@@ -94,7 +94,7 @@ void OffsetModel::judge_all() {
   judged_.clear();
   std::vector<double> excess;
   for (std::size_t i = 0; i < touched_.size(); ++i) {
-    const Touched& low = touched_[i];
+    const OffsetContact& low = touched_[i];
     if (above_[i] || at_a_rim(low.place)) continue;
     judged_.push_back(low.when);
     excess.push_back(low.excess);
@@ -121,7 +121,7 @@ void OffsetModel::judge_all() {
 }
 
 OffsetModel::Estimate OffsetModel::at(double seconds, int motion) const {
-  const When now{seconds, motion};
+  const OffsetInput now{seconds, motion};
   Estimate out{0.0, covariance(now, now)};
   if (judged_.empty()) return out;
   // Size of the coefficients without the broad signal, which is unused here.

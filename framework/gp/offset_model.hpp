@@ -61,13 +61,13 @@ class OffsetModel {
   double noise() const { return prior_.noise; }
 
  private:
-  struct When {
+  struct OffsetInput {
     double seconds;
     int motion;
   };
-  struct Touched {
+  struct OffsetContact {
     Target place;
-    When when;
+    OffsetInput when;
     Eigen::Index own;  ///< index of its motion in motions_
     double excess;
   };
@@ -78,16 +78,16 @@ class OffsetModel {
   void search_from_below(std::vector<bool>& left) const;
   bool at_a_rim(const Target& place) const;
   void judge_all();
-  double covariance(const When& a, const When& b) const {
+  double covariance(const OffsetInput& a, const OffsetInput& b) const {
     const double share = a.motion == b.motion ? 1.0 : kShared;
     return share * prior_.offset * prior_.offset + prior_.drift * prior_.drift * a.seconds * b.seconds;
   }
 
   OffsetPrior prior_;
-  std::vector<int> motions_;      ///< motions of the contacts so far
-  std::vector<Touched> touched_;  ///< all contacts
-  std::vector<bool> above_;       ///< flag per contact
-  std::vector<When> judged_;      ///< times and motions of the contacts that are tested for outliers
+  std::vector<int> motions_;            ///< motions of the contacts so far
+  std::vector<OffsetContact> touched_;  ///< all contacts
+  std::vector<bool> above_;             ///< flag per contact
+  std::vector<OffsetInput> judged_;     ///< times and motions of the contacts that are tested for outliers
   OutlierPosterior posterior_;
 };
 

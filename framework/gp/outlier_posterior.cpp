@@ -55,7 +55,7 @@ int add_set(OutlierSearch& search, const InlierGp& gp, const OutlierSet& set, do
   const int remainder = search.remainder_of(set);
   const auto ones = search.solved_ones(remainder);
   const auto heights = search.solved_heights(remainder);
-  const InlierGp::Constant constant = gp.constant(ones.sum(), heights.sum());
+  const InlierGp::ConstantPosterior constant = gp.constant(ones.sum(), heights.sum());
   auto mean = moments.squares.next();
   mean << constant.mean, heights - constant.mean * ones;
   moments.mean += weight * mean;

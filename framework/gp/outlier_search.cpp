@@ -43,8 +43,8 @@ InlierGp::InlierGp(const OutlierProblem& problem, double surface_signal, double 
   log_odds = (pi / (1.0 - pi)).unaryExpr(&math::log) - 0.5 * outlier.square() - math::log(problem.outlier_deviation);
 }
 
-InlierGp::Constant InlierGp::constant(double ones, double heights) const {
-  Constant out;
+InlierGp::ConstantPosterior InlierGp::constant(double ones, double heights) const {
+  ConstantPosterior out;
   if (!(mean_deviation > 0.0)) return out;
   const double prior = mean_deviation * mean_deviation;
   out.precision = 1.0 / prior + ones;

@@ -20,13 +20,13 @@ struct InlierGp {
   int taps() const { return static_cast<int>(solved_heights.size()); }
   /// Posterior of the constant in the mean, and the constant's term in the log weight of a set. All values are 0
   /// without a constant.
-  struct Constant {
+  struct ConstantPosterior {
     double precision = 0.0;
     double mean = 0.0;
     double log_weight = 0.0;
   };
   /// Returns these values for a set with the sums `ones` = 1^T A' 1 and `heights` = 1^T A' y.
-  Constant constant(double ones, double heights) const;
+  ConstantPosterior constant(double ones, double heights) const;
 
   double signal;
   double mean_deviation;           ///< standard deviation of the constant; 0 for none

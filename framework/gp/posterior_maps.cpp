@@ -15,7 +15,7 @@ namespace palpate {
 namespace {
 
 constexpr double kUnbounded = std::numeric_limits<double>::infinity();
-constexpr loops::Reading kUnchanged{-kUnbounded, kUnbounded, 1.0, 0.0};
+constexpr loops::MapTransform kUnchanged{-kUnbounded, kUnbounded, 1.0, 0.0};
 
 }  // namespace
 

@@ -30,7 +30,7 @@ struct FactoredTaps {
 };
 
 /// The engine that computes the maps of a GP.
-struct EngineState {
+struct EngineReport {
   const char* name;
   std::string reason;  ///< reason for the choice of the engine, one line
   /// Bound of the engine's error, in addition to the rounding of `dense`. Errors of means are in prior standard
@@ -76,7 +76,7 @@ class PosteriorMaps {
   /// Returns whether the maps contain this number of rows. The functions below require that they contain all rows.
   bool have_rows(int rows) const { return rows_ == rows; }
 
-  EngineState engine() const { return {choice_.engine->name(), choice_.reason, error_bound()}; }
+  EngineReport engine() const { return {choice_.engine->name(), choice_.reason, error_bound()}; }
   /// Sets `out` to the standardised mean of a shown output, times `signal`, plus `mean`.
   void read_mean(int output, double signal, double mean, Eigen::VectorXd& out) const;
   /// Sets `out` to the variance without noise, bounded to [0, prior], times `scale`.

@@ -69,7 +69,7 @@ std::string stamp_difference(const std::string& theirs, const std::string& ours)
 }
 
 std::string read_library(const fs::path& file) {
-  Reading reading = read_bounded(file, kMostLibraryBytes, Origin::user);
+  FileReading reading = read_bounded(file, kMostLibraryBytes, FileOrigin::user);
   if (!reading)
     refuse(file, "opening", reading.reason ? reading.reason.message() : words_of(reading, kMostLibraryBytes).reason);
   return std::move(reading.text);
@@ -181,7 +181,7 @@ std::string trouble_of_folder(const fs::path& folder) {
 
 PluginNames plugins_of_build(const fs::path& folder) {
   PluginNames out;
-  std::istringstream in(read_bounded(folder / "plugins.txt", kMostConfigBytes, Origin::user).text);
+  std::istringstream in(read_bounded(folder / "plugins.txt", kMostConfigBytes, FileOrigin::user).text);
   for (std::string line; std::getline(in, line);) {
     const auto slash = line.find('/');
     if (slash != std::string::npos) out.emplace(line.substr(0, slash), line.substr(slash + 1));

@@ -24,16 +24,16 @@ namespace {
 
 /// The error of a plugin that reads a quantity without declaring it. It keeps the name of this plugin, even if another
 /// plugin's wrapper catches it.
-class Undeclared final : public Error {
+class UndeclaredReadError final : public Error {
  public:
   using Error::Error;
 };
 
 /// A belief that allows a plugin to read only the quantities that it declared.
-class Declared final : public BeliefView {
+class RestrictedBeliefView final : public BeliefView {
  public:
   /// `belief` and `name`, the name of the plugin, must outlive the object.
-  Declared(const BeliefView& belief, QuantitySet reads, const std::string& name)
+  RestrictedBeliefView(const BeliefView& belief, QuantitySet reads, const std::string& name)
       : belief_(belief), reads_(std::move(reads)), name_(name) {}
   const Candidates& candidates() const override { return belief_.candidates(); }
   const TapsSoFar& taps() const override { return belief_.taps(); }
@@ -46,8 +46,8 @@ class Declared final : public BeliefView {
  private:
   const BeliefView& declared(std::string_view quantity) const {
     if (reads_.find(quantity) != reads_.end()) return belief_;
-    throw Undeclared(name_, "reads " + std::string(quantity) + ", which its reads() does not list", "add it there",
-                     Error::Kind::run);
+    throw UndeclaredReadError(name_, "reads " + std::string(quantity) + ", which its reads() does not list",
+                              "add it there", Error::Kind::run);
   }
 
   const BeliefView& belief_;
@@ -64,7 +64,7 @@ bool are_finite(const std::optional<double>& value) { return !value || std::isfi
 bool are_finite(const KernelParameter& parameter) { return std::isfinite(parameter.value); }
 bool are_finite(const FootprintNumber& number) { return std::isfinite(number.value); }
 bool are_finite(const FitOutput& output) { return std::isfinite(output.signal) && std::isfinite(output.mean); }
-bool are_finite(const Stretch& stretch) { return std::isfinite(stretch.begin) && std::isfinite(stretch.end); }
+bool are_finite(const LineInterval& stretch) { return std::isfinite(stretch.begin) && std::isfinite(stretch.end); }
 template <class Value>
 bool are_finite(const std::vector<Value>& values) {
   return std::all_of(values.begin(), values.end(), [](const Value& one) { return are_finite(one); });
@@ -82,7 +82,7 @@ class Wrapper : public Interface {
   decltype(auto) call(Method method, Arguments&&... arguments) const {
     try {
       return std::invoke(method, *inner_, std::forward<Arguments>(arguments)...);
-    } catch (const Undeclared&) {
+    } catch (const UndeclaredReadError&) {
       throw;
     } catch (const Error& trouble) {
       const std::string place = trouble.where().empty() ? std::string() : trouble.where() + ": ";
@@ -112,7 +112,9 @@ class Wrapper : public Interface {
   }
 
   /// Returns a view of `belief` that allows only the access that the plugin has declared.
-  Declared declared(const BeliefView& belief) const { return Declared(belief, call(&Interface::reads), name_); }
+  RestrictedBeliefView declared(const BeliefView& belief) const {
+    return RestrictedBeliefView(belief, call(&Interface::reads), name_);
+  }
 
  private:
   std::string name_;
@@ -315,7 +317,7 @@ class WrappedShape final : public Wrapper<Shape> {
     if (out != kNever) require_finite("first_intersection()", out);
     return out;
   }
-  std::vector<Stretch> intervals(const Line& line) const override {
+  std::vector<LineInterval> intervals(const Line& line) const override {
     return finite("intervals()", call(&Shape::intervals, line));
   }
   double support(const Eigen::Vector3d& direction) const override {

@@ -53,7 +53,7 @@ JobStates read_job_states(const Sweep& sweep, const std::vector<std::size_t>& jo
 }
 
 void reopen_failed(JobStates& standing) {
-  for (const SweepFailure& one : standing.failures) standing.open.push_back(one.job);
+  for (const FailedJob& one : standing.failures) standing.open.push_back(one.job);
   standing.failures.clear();
   std::sort(standing.open.begin(), standing.open.end());
 }
@@ -69,7 +69,7 @@ bool execute_jobs(Launcher& launcher, const Sweep& sweep, JobStates begun, const
   bool all_recorded = true;
   bool cancelled = false;
   launcher.submit(begun.open);
-  Launcher::State state;
+  Launcher::PollResult state;
   do {
     gone = gone || is_gone(sweep);
     if (!cancelled && (gone || (interrupted != nullptr && interrupted->load()))) {

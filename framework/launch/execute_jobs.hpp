@@ -20,12 +20,12 @@ struct SweepProgress {
   int failed = 0;
   int running = 0;
   int before = 0;        ///< jobs done or failed before the launch
-  bool blocked = false;  ///< see Launcher::State
+  bool blocked = false;  ///< see Launcher::PollResult
   bool last = false;
 };
 
 /// A failed job.
-struct SweepFailure {
+struct FailedJob {
   std::size_t job = 0;
   int attempts = 0;
   std::string reason;
@@ -34,8 +34,8 @@ struct SweepFailure {
 /// The states of some jobs, according to their directories.
 struct JobStates {
   std::map<RunStatus::State, int> counts;
-  std::vector<std::size_t> open;       ///< jobs to run: neither done, nor failed, nor known to be running
-  std::vector<SweepFailure> failures;  ///< failed jobs; like `open`, in the order of the jobs
+  std::vector<std::size_t> open;    ///< jobs to run: neither done, nor failed, nor known to be running
+  std::vector<FailedJob> failures;  ///< failed jobs; like `open`, in the order of the jobs
 };
 
 /// The further checks of read_job_states(). `missing_files`: a done job without all its files, as after a power cut,

@@ -23,7 +23,7 @@ namespace palpate {
 class Launcher {
  public:
   /// The result of poll().
-  struct State {
+  struct PollResult {
     std::vector<std::size_t> returned;  ///< jobs that ended or were abandoned since the last call
     bool all_recorded = true;           ///< false: a returned job could not record its end or write its files
     /// A job could not start, for a reason that also applies to all waiting jobs. They were dropped.
@@ -41,7 +41,7 @@ class Launcher {
 
   /// Waits for the next event, for at most `seconds`. Returns early after a signal, and at once if no job runs or
   /// waits. Throws Error if the state of the jobs can no longer be found out.
-  virtual State poll(double seconds) = 0;
+  virtual PollResult poll(double seconds) = 0;
 
   /// Stops running jobs after their current tap and drops waiting jobs. poll() still returns the running jobs.
   virtual void cancel() = 0;
@@ -77,7 +77,7 @@ struct TaskArray {
 };
 
 /// Input for the construction of a launcher. `environment` and `sweep` must outlive the launcher.
-struct LaunchOrder {
+struct LauncherSetup {
   const RunEnvironment& environment;
   const Sweep& sweep;
   LaunchOptions options;
@@ -86,7 +86,7 @@ struct LaunchOrder {
 
 /// An entry of the table of launchers.
 struct LauncherType {
-  std::unique_ptr<Launcher> (*make)(const LaunchOrder& order);
+  std::unique_ptr<Launcher> (*make)(const LauncherSetup& order);
   /// Throws Error for options that this launcher rejects. Null if the launcher accepts all options.
   void (*check_options)(const ClusterOptions& options) = nullptr;
   /// Throws Error if this machine lacks the programs of the scheduler. Null if the launcher needs no programs.

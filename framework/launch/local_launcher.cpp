@@ -32,7 +32,7 @@ bool is_crash(int signal) {
 }  // namespace
 
 extern const LauncherType local_launcher{
-    [](const LaunchOrder& order) -> std::unique_ptr<Launcher> { return std::make_unique<LocalLauncher>(order); }};
+    [](const LauncherSetup& order) -> std::unique_ptr<Launcher> { return std::make_unique<LocalLauncher>(order); }};
 
 void LocalLauncher::submit(const std::vector<std::size_t>& jobs) {
   waiting_.insert(waiting_.end(), jobs.begin(), jobs.end());
@@ -41,7 +41,7 @@ void LocalLauncher::submit(const std::vector<std::size_t>& jobs) {
 bool LocalLauncher::start(std::size_t job) {
   std::unique_ptr<ChildProcess> process = ChildProcess::fork([&](const ChildProcess::Say& say) -> int {
     // Close the pipes of other children, because this child needs the file descriptors for its own files.
-    for (const Running& other : running_) other.process->forget();
+    for (const RunningJob& other : running_) other.process->forget();
     const JobEnd end = run(job);
     if (end == JobEnd::blocked) say(kBlocked);
     // Use exit() and not _exit(), because plugins must release resources such as a ROS node.
@@ -71,7 +71,7 @@ JobEnd LocalLauncher::run(std::size_t job) const {
   return end;
 }
 
-Launcher::State LocalLauncher::poll(double seconds) {
+Launcher::PollResult LocalLauncher::poll(double seconds) {
   if (again_ <= Clock::now()) {
     waiting_.insert(waiting_.end(), later_.begin(), later_.end());
     later_.clear();
@@ -80,15 +80,15 @@ Launcher::State LocalLauncher::poll(double seconds) {
     waiting_.pop_front();
   }
   std::vector<ChildProcess*> processes;
-  for (const Running& one : running_) processes.push_back(one.process.get());
+  for (const RunningJob& one : running_) processes.push_back(one.process.get());
   if (!later_.empty()) seconds = std::min(seconds, std::chrono::duration<double>(kBusyPause).count());
   if (running_.empty() && later_.empty()) seconds = 0.0;
   ChildProcess::listen(processes, seconds);
-  State state;
+  PollResult state;
   // The count includes jobs that have just ended, because other jobs start at once in their place.
   state.running = static_cast<int>(running_.size());
-  const auto ended =
-      std::stable_partition(running_.begin(), running_.end(), [](const Running& one) { return !one.process->ended(); });
+  const auto ended = std::stable_partition(running_.begin(), running_.end(),
+                                           [](const RunningJob& one) { return !one.process->ended(); });
   for (auto one = ended; one != running_.end(); ++one) conclude(one->job, *one->process, state);
   running_.erase(ended, running_.end());
   if (waiting_.empty()) state.running = static_cast<int>(running_.size());
@@ -96,7 +96,7 @@ Launcher::State LocalLauncher::poll(double seconds) {
   return state;
 }
 
-void LocalLauncher::conclude(std::size_t job, const ChildProcess& process, State& state) {
+void LocalLauncher::conclude(std::size_t job, const ChildProcess& process, PollResult& state) {
   const int wait_status = process.status();
   if (wait_status < 0) throw Error("", "the child process of a job is lost", {}, Error::Kind::run);
   if (WIFSIGNALED(wait_status)) return was_killed(job, WTERMSIG(wait_status), state);
@@ -122,7 +122,7 @@ void LocalLauncher::conclude(std::size_t job, const ChildProcess& process, State
   state.returned.push_back(job);
 }
 
-void LocalLauncher::was_killed(std::size_t job, int signal, State& state) {
+void LocalLauncher::was_killed(std::size_t job, int signal, PollResult& state) {
   // Kills before the attempt is recorded count, too. Otherwise such a job would start again forever.
   const int attempts = std::max(attempts_of(directory_of(job)), ++kills_[job]);
   const std::string name = fmt::format("signal {} ({})", signal, ::strsignal(signal));
@@ -145,7 +145,7 @@ void LocalLauncher::cancel() {
   cancelled_ = true;
   waiting_.clear();
   later_.clear();
-  for (const Running& one : running_) one.process->signal(SIGTERM);
+  for (const RunningJob& one : running_) one.process->signal(SIGTERM);
 }
 
 }  // namespace palpate

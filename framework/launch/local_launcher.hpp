@@ -20,16 +20,16 @@ namespace palpate {
 class LocalLauncher final : public Launcher {
  public:
   /// The destructor kills the running jobs.
-  explicit LocalLauncher(LaunchOrder order) : order_(std::move(order)) {}
+  explicit LocalLauncher(LauncherSetup order) : order_(std::move(order)) {}
 
   void submit(const std::vector<std::size_t>& jobs) override;
-  State poll(double seconds) override;
+  PollResult poll(double seconds) override;
   void cancel() override;
 
  private:
   using Clock = std::chrono::steady_clock;
   /// A running job.
-  struct Running {
+  struct RunningJob {
     std::size_t job = 0;
     std::unique_ptr<ChildProcess> process;
   };
@@ -38,17 +38,17 @@ class LocalLauncher final : public Launcher {
   bool start(std::size_t job);
   /// Runs the job; called in its child process.
   JobEnd run(std::size_t job) const;
-  void conclude(std::size_t job, const ChildProcess& process, State& state);
-  void was_killed(std::size_t job, int signal, State& state);
+  void conclude(std::size_t job, const ChildProcess& process, PollResult& state);
+  void was_killed(std::size_t job, int signal, PollResult& state);
   std::filesystem::path directory_of(std::size_t job) const {
     return job_directory(order_.sweep, order_.sweep.jobs[job]);
   }
 
-  LaunchOrder order_;
+  LauncherSetup order_;
   std::deque<std::size_t> waiting_;
   std::vector<std::size_t> later_;  ///< jobs that other processes run, to be tried again
   Clock::time_point again_;         ///< time of the next try
-  std::vector<Running> running_;
+  std::vector<RunningJob> running_;
   std::map<std::size_t, int> kills_;  ///< number of kills per job
   bool cancelled_ = false;
 };

@@ -79,7 +79,7 @@ void check_shared_locks(const fs::path& folder, std::string_view mountinfo) {
 }
 
 void check_shared_locks(const fs::path& folder) {
-  const Reading mounts = read_bounded("/proc/self/mountinfo", kMostSystemBytes, Origin::user);
+  const FileReading mounts = read_bounded("/proc/self/mountinfo", kMostSystemBytes, FileOrigin::user);
   if (mounts) check_shared_locks(fs::canonical(folder), mounts.text);
 }
 

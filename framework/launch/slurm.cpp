@@ -41,7 +41,7 @@ std::optional<int> setting(const std::string& text, const std::string& name) {
 /// Runs a program to its end, for at most `patience` seconds, and returns its output.
 std::string ask(const std::vector<std::string>& words, const std::string& hint = kNoClusterHint,
                 double patience = kAnswerSeconds) {
-  Program program{words};
+  ProgramCall program{words};
   // Removes variables by which users change the output or the duration of Slurm's commands.
   static const std::regex users("^(SQUEUE_|SBATCH_WAIT=)");
   const auto is_users = [](const std::string& one) { return std::regex_search(one, users); };

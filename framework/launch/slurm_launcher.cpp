@@ -35,31 +35,32 @@ constexpr std::chrono::seconds kPause{1};  ///< shortest time between two querie
 constexpr std::chrono::seconds kMostPause{60};
 
 /// An option of sbatch that palpate sets, and the hint for users who set it.
-struct OwnWord {
+struct ReservedOption {
   const char* name;
   const char* letter;
   const char* hint;
 };
 constexpr const char* kOwnOption = "use palpate's own option of this name";
-constexpr std::array<OwnWord, 10> kOwnWords{{{"--partition", "-p", kOwnOption},
-                                             {"--time", "-t", kOwnOption},
-                                             {"--account", "-A", kOwnOption},
-                                             {"--wait", "-W", kOwnOption},
-                                             {"--cpus-per-task", "-c", "set the cores per task with -j"},
-                                             {"--array", "-a", "palpate itself chooses the missing jobs"},
-                                             {"--output", "-o", "palpate writes the logs into the sweep's directory"},
-                                             {"--clusters", "-M", "submit on the login node of that cluster"},
-                                             {"--wrap", "--wrap", "palpate itself sets the command of a task"},
-                                             {"--parsable", "--parsable", "leave it out"}}};
+constexpr std::array<ReservedOption, 10> kOwnWords{
+    {{"--partition", "-p", kOwnOption},
+     {"--time", "-t", kOwnOption},
+     {"--account", "-A", kOwnOption},
+     {"--wait", "-W", kOwnOption},
+     {"--cpus-per-task", "-c", "set the cores per task with -j"},
+     {"--array", "-a", "palpate itself chooses the missing jobs"},
+     {"--output", "-o", "palpate writes the logs into the sweep's directory"},
+     {"--clusters", "-M", "submit on the login node of that cluster"},
+     {"--wrap", "--wrap", "palpate itself sets the command of a task"},
+     {"--parsable", "--parsable", "leave it out"}}};
 
 class SlurmLauncher final : public Launcher {
  public:
   /// The nodes must share the file system of the program and the sweep. Submitted tasks outlive this object.
-  explicit SlurmLauncher(LaunchOrder order) : order_(std::move(order)) {}
+  explicit SlurmLauncher(LauncherSetup order) : order_(std::move(order)) {}
 
   /// Writes the script and the list of jobs per task into slurm/N in the sweep's directory, and submits them. Slurm
   /// writes the logs there. Throws Error if Slurm does not answer or rejects an array. Arrays that were already passed
-  /// to LaunchOrder::submitted then remain in the queue.
+  /// to LauncherSetup::submitted then remain in the queue.
   void submit(const std::vector<std::size_t>& jobs) override {
     if (jobs.empty()) return;
     const auto most = static_cast<std::size_t>(slurm::most_tasks());
@@ -89,8 +90,8 @@ class SlurmLauncher final : public Launcher {
 
   /// Returns jobs whose records have an end, and all jobs once the queue has no task of these arrays left. Throws Error
   /// if Slurm has not answered for ten minutes.
-  State poll(double seconds) override {
-    State state;
+  PollResult poll(double seconds) override {
+    PollResult state;
     if (open_.empty()) return state;
     const double pause = std::chrono::duration<double>(next_ - Clock::now()).count();
     if (pause > 0.0) {
@@ -181,7 +182,7 @@ class SlurmLauncher final : public Launcher {
     next_ = Clock::now() + std::clamp<Clock::duration>(10 * (Clock::now() - begun), kPause, kMostPause);
   }
 
-  LaunchOrder order_;
+  LauncherSetup order_;
   fs::path directory_ = absolute(order_.sweep.directory / "").lexically_normal().parent_path();
   std::vector<int> arrays_;
   std::vector<std::size_t> open_;          ///< jobs that have not been returned
@@ -207,7 +208,7 @@ void check_sbatch_words(const std::vector<std::string>& words) {
     }
     const bool is_long = word.compare(0, 2, "--") == 0;
     const std::string name = is_long ? word.substr(0, word.find('=')) : word.substr(0, 2);
-    for (const OwnWord& own : kOwnWords) {
+    for (const ReservedOption& own : kOwnWords) {
       if (name != own.name && name != own.letter) continue;
       throw Error("command line", fmt::format("--sbatch: {} cannot be set with --sbatch", name), own.hint);
     }
@@ -235,7 +236,7 @@ std::string task_script(const fs::path& program, const fs::path& directory, cons
 }
 
 const LauncherType slurm_launcher{
-    [](const LaunchOrder& order) -> std::unique_ptr<Launcher> { return std::make_unique<SlurmLauncher>(order); },
+    [](const LauncherSetup& order) -> std::unique_ptr<Launcher> { return std::make_unique<SlurmLauncher>(order); },
     [](const ClusterOptions& options) { check_sbatch_words(options.words); }, slurm::check_installed};
 
 }  // namespace palpate

@@ -31,12 +31,12 @@ class AskTellRun {
     const ObjectGuard guard(lock_);
     const ResolvedConfig resolved = resolve(config, overrides);
     run_ = started(
-        Run::start(environment_.run_environment, resolved, directory_of(resolved, runs), {force, Taps::by_caller}));
+        Run::start(environment_.run_environment, resolved, directory_of(resolved, runs), {force, TapMaker::by_caller}));
     describe();
   }
   AskTellRun(const std::string& directory, bool retry_failed, bool force) {
     const ObjectGuard guard(lock_);
-    run_ = started(Run::resume(environment_.run_environment, directory, {retry_failed, force, Taps::by_caller}));
+    run_ = started(Run::resume(environment_.run_environment, directory, {retry_failed, force, TapMaker::by_caller}));
     describe();
   }
   /// In a forked child the run is never destroyed, because its destructor would wait for threads that do not exist in

@@ -65,7 +65,7 @@ std::string run(const std::string& config, const std::vector<std::string>& overr
                 bool force, const py::object& progress) {
   InterruptibleEnvironment environment;
   ProgressObserver observer(environment.interrupted, progress);
-  RunReport report;
+  RunConclusion report;
   {
     const GilRelease no_gil;
     const ResolvedConfig resolved = resolve(config, overrides);
@@ -92,7 +92,7 @@ std::string begin_sweep(const std::string& config, const std::vector<std::string
 
 std::string found_run(const std::string& words, const std::string& runs) {
   const GilRelease no_gil;
-  return find_record(words, Wanted::run, runs).string();
+  return find_record(words, RecordKind::run, runs).string();
 }
 
 std::vector<std::string> found_sweep(const std::vector<std::string>& words, const std::string& runs) {

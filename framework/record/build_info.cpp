@@ -37,7 +37,7 @@ Tree libraries() {
 /// without changes of code does not change the program.
 Tree read_stamp(const Installation& installation) {
   const fs::path file = installation.plugins / "build.json";
-  return is_there(file) ? read_json(file, Origin::user) : Tree::map();
+  return is_there(file) ? read_json(file, FileOrigin::user) : Tree::map();
 }
 
 Tree describe_plugins(const PluginHost& host, const PluginNames& plugins) {

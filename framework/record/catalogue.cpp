@@ -122,15 +122,15 @@ Error unknown(const std::string& words, const std::string& name, const fs::path&
 }
 
 /// The records that the words of a user name.
-struct Meant {
+struct NamedRecords {
   std::string base;  ///< the words, without @latest
   bool latest = false;
   std::vector<fs::path> records;  ///< in the order of their start; empty for a path without a record
 };
 
 /// Returns the records that `words` name. Throws Error for an unknown name.
-Meant find_meant(const std::string& words, Wanted wanted, const fs::path& runs) {
-  Meant out;
+NamedRecords find_meant(const std::string& words, RecordKind wanted, const fs::path& runs) {
+  NamedRecords out;
   out.latest = !is_there(words) && boost::ends_with(words, kLatest);
   out.base = out.latest ? words.substr(0, words.size() - std::string_view(kLatest).size()) : words;
   const std::string& base = out.base;
@@ -147,14 +147,14 @@ Meant find_meant(const std::string& words, Wanted wanted, const fs::path& runs) 
     if (is_path || !is_word) return out;
     throw unknown(words, base, runs);
   }
-  const auto fits = [&](const fs::path& one) { return is_sweep(one) == (wanted == Wanted::sweep); };
-  if (wanted != Wanted::any && std::any_of(records.begin(), records.end(), fits))
+  const auto fits = [&](const fs::path& one) { return is_sweep(one) == (wanted == RecordKind::sweep); };
+  if (wanted != RecordKind::any && std::any_of(records.begin(), records.end(), fits))
     records.erase(std::stable_partition(records.begin(), records.end(), fits), records.end());
   return out;
 }
 
 /// Returns the only record, or the last one with @latest. Throws Error for several records.
-fs::path only_one(const std::string& words, const Meant& meant) {
+fs::path only_one(const std::string& words, const NamedRecords& meant) {
   if (meant.records.empty()) return meant.base;
   if (meant.records.size() > 1 && !meant.latest) throw several(words, meant.base, meant.records);
   return meant.records.back();
@@ -209,7 +209,7 @@ Row settings_of(const Tree& config) {
 
 Row read_settings(const fs::path& directory) { return settings_of(read_run_config(directory)); }
 
-fs::path find_record(const std::string& words, Wanted wanted, const fs::path& runs) {
+fs::path find_record(const std::string& words, RecordKind wanted, const fs::path& runs) {
   return only_one(words, find_meant(words, wanted, runs));
 }
 
@@ -219,7 +219,7 @@ std::vector<fs::path> find_records(const std::vector<std::string>& words, const 
     // A pattern such as runs/NAME/* also matches tables and figures next to the records.
     std::error_code none;
     if (words.size() > 1 && one.find('/') != std::string::npos && fs::is_regular_file(one, none)) continue;
-    const Meant meant = find_meant(one, Wanted::sweep, runs);
+    const NamedRecords meant = find_meant(one, RecordKind::sweep, runs);
     const bool all = !meant.latest && std::none_of(meant.records.begin(), meant.records.end(), is_sweep);
     if (all) out.insert(out.end(), meant.records.begin(), meant.records.end());
     if (!all || meant.records.empty()) out.push_back(only_one(one, meant));

@@ -41,7 +41,7 @@ Row read_settings(const std::filesystem::path& directory);
 std::vector<std::string> differing_keys(const std::vector<Row>& configs);
 
 /// The kind of record that a command accepts; records of the other kind are ignored if one of this kind exists.
-enum class Wanted { run, sweep, any };
+enum class RecordKind { run, sweep, any };
 
 /// Returns the directory of the record that `words`, the user's argument, name. The meanings are tried in this order:
 ///
@@ -53,7 +53,7 @@ enum class Wanted { run, sweep, any };
 /// Returns a path without a record unchanged; the caller then reports what is missing there. Throws Error for an
 /// unknown name. Throws Error if several records match; the message lists the most recent ones and the settings that
 /// distinguish them.
-std::filesystem::path find_record(const std::string& words, Wanted wanted = Wanted::any,
+std::filesystem::path find_record(const std::string& words, RecordKind wanted = RecordKind::any,
                                   const std::filesystem::path& runs = "runs");
 
 /// Returns the directories of all records that several words name, for commands that treat many records as one sweep. A

@@ -20,7 +20,7 @@ constexpr std::size_t kMostShown = 3;
 constexpr std::size_t kMostCompared = 64;
 
 /// One setting and its values in all runs.
-struct Setting {
+struct SettingValues {
   std::string name;                ///< "scene", "kernel.length_scale"
   std::string block;               ///< first part of the name
   std::vector<std::string> words;  ///< value in each run; "" where the run has none
@@ -33,8 +33,8 @@ struct Setting {
 
 std::string block_of(const std::string& key) { return key.substr(0, key.find('.')); }
 
-Setting setting(const std::string& name, std::vector<std::string> words, int rank) {
-  Setting out{name, block_of(name), std::move(words), {}, {}, rank};
+SettingValues setting(const std::string& name, std::vector<std::string> words, int rank) {
+  SettingValues out{name, block_of(name), std::move(words), {}, {}, rank};
   std::map<std::string, std::size_t> known;
   for (const std::string& word : out.words) {
     const std::size_t code = known.emplace(word, known.size()).first->second;
@@ -66,7 +66,7 @@ std::vector<std::string> group_words(const std::vector<RecordedSettings>& runs, 
   return out;
 }
 
-std::vector<Setting> differing_settings(const std::vector<RecordedSettings>& runs) {
+std::vector<SettingValues> differing_settings(const std::vector<RecordedSettings>& runs) {
   std::vector<Row> configs;
   configs.reserve(runs.size());
   for (const RecordedSettings& run : runs) configs.push_back(run.values);
@@ -80,12 +80,12 @@ std::vector<Setting> differing_settings(const std::vector<RecordedSettings>& run
   std::stable_sort(keys.begin(), keys.end(), [&](const std::string& a, const std::string& b) {
     return order.at(block_of(a)) < order.at(block_of(b));
   });
-  std::vector<Setting> out;
+  std::vector<SettingValues> out;
   std::set<std::string> blocks;
   for (const std::string& key : keys) {
     std::vector<std::string> values;
     for (const Row& config : configs) values.push_back(config.text(key));
-    Setting one = setting(key, std::move(values), key == "seed" ? 0 : boost::ends_with(key, ".type") ? 2 : 3);
+    SettingValues one = setting(key, std::move(values), key == "seed" ? 0 : boost::ends_with(key, ".type") ? 2 : 3);
     if (blocks.insert(one.block).second) {
       const std::vector<std::string> groups = group_words(runs, one.block);
       const bool differ = std::adjacent_find(groups.begin(), groups.end(), std::not_equal_to<>()) != groups.end();
@@ -96,7 +96,7 @@ std::vector<Setting> differing_settings(const std::vector<RecordedSettings>& run
   return out;
 }
 
-std::vector<std::string> distinguishing(const std::vector<Setting>& settings, std::size_t run) {
+std::vector<std::string> distinguishing(const std::vector<SettingValues>& settings, std::size_t run) {
   std::vector<std::string> out;
   std::set<std::string> blocks;
   std::vector<std::size_t> rest;  // runs that the chosen settings do not distinguish yet
@@ -104,9 +104,9 @@ std::vector<std::string> distinguishing(const std::vector<Setting>& settings, st
     if (other != run) rest.push_back(other);
   }
   while (out.size() < kMostShown) {
-    const Setting* best = nullptr;
+    const SettingValues* best = nullptr;
     std::tuple<std::size_t, std::size_t, int> most;
-    for (const Setting& one : settings) {
+    for (const SettingValues& one : settings) {
       const bool is_new = blocks.count(one.block) == 0;
       const auto apart = static_cast<std::size_t>(std::count_if(
           rest.begin(), rest.end(), [&](std::size_t other) { return one.codes[other] != one.codes[run]; }));
@@ -139,7 +139,7 @@ std::map<std::string, std::set<std::string>> recorded_groups(const std::map<std:
 }
 
 std::vector<std::vector<std::string>> distinguishing_settings(const std::vector<RecordedSettings>& runs) {
-  const std::vector<Setting> settings = differing_settings(runs);
+  const std::vector<SettingValues> settings = differing_settings(runs);
   std::vector<std::vector<std::string>> out;
   for (std::size_t run = 0; run < runs.size(); ++run) out.push_back(distinguishing(settings, run));
   return out;

@@ -112,9 +112,9 @@ bool has(const BeliefState& state, std::string_view name) { return state.find(na
 constexpr const char* kObject = "object";
 
 /// Returns the text of the field `relabelled`, such as "5 object; 9 desk".
-std::string words(const std::vector<Relabelled>& relabelled) {
+std::string words(const std::vector<RelabelledContact>& relabelled) {
   std::string out;
-  for (const Relabelled& one : relabelled)
+  for (const RelabelledContact& one : relabelled)
     out += fmt::format("{}{} {}", out.empty() ? "" : "; ", one.tap, one.on_object ? kObject : "desk");
   return out;
 }
@@ -626,7 +626,7 @@ std::optional<bool> label_now(const Row& row, const RunResult& counts) {
   if (!then) return std::nullopt;
   const auto number = static_cast<int>(row.number("tap").value_or(0.0));
   const bool changed = std::any_of(counts.relabelled.begin(), counts.relabelled.end(),
-                                   [&](const Relabelled& one) { return one.tap == number; });
+                                   [&](const RelabelledContact& one) { return one.tap == number; });
   return changed != *then;
 }
 
@@ -737,8 +737,8 @@ void add_errors(Row& row, const Errors& errors) {
     if (!one.any_side || errors.*one.value) row.add(one.field.name, errors.*one.value);
 }
 
-std::vector<Relabelled> relabelled_in(const Row& summary) {
-  std::vector<Relabelled> out;
+std::vector<RelabelledContact> relabelled_in(const Row& summary) {
+  std::vector<RelabelledContact> out;
   std::istringstream words(summary.text("relabelled"));
   std::string label;
   for (int tap = 0; words >> tap >> label;) out.push_back({tap, label.rfind(kObject, 0) == 0});

@@ -92,7 +92,7 @@ const std::vector<RecordField>& error_fields();
 
 /// Returns the contacts whose final label differs from the label recorded at their tap, from the field `relabelled` of
 /// a summary.
-std::vector<Relabelled> relabelled_in(const Row& summary);
+std::vector<RelabelledContact> relabelled_in(const Row& summary);
 
 /// Returns the field with the root mean square error of whole reconstructions: `rmse_m`, or `rms_surface_distance_m` if
 /// the summaries have only the latter (taps from any side).

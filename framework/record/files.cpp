@@ -93,10 +93,10 @@ bool shows_nothing(int reason) {
   return reason == ENOENT || reason == ENOTDIR || reason == EACCES || reason == ELOOP || reason == ENAMETOOLONG;
 }
 
-std::optional<std::string> text_in(Reading reading, const fs::path& file, std::uintmax_t most_bytes) {
+std::optional<std::string> text_in(FileReading reading, const fs::path& file, std::uintmax_t most_bytes) {
   if (reading) return std::move(reading.text);
   const int reason = reading.reason.value();
-  if (reading.kind == Reading::Kind::absent && reason == ENOENT) return std::nullopt;
+  if (reading.kind == FileReading::Kind::absent && reason == ENOENT) return std::nullopt;
   // Too few descriptors or too little memory do not mean that the file is missing.
   const bool fails = reason != 0 && !shows_nothing(reason);
   if (reason != 0 && !fails && !is_there(file)) return std::nullopt;
@@ -215,14 +215,14 @@ std::string read_file(const fs::path& file, std::uintmax_t most_bytes) {
   return std::move(*text);
 }
 
-std::optional<std::string> read_if_there(const fs::path& file, std::uintmax_t most_bytes, Origin origin) {
+std::optional<std::string> read_if_there(const fs::path& file, std::uintmax_t most_bytes, FileOrigin origin) {
   return text_in(read_bounded(file, most_bytes, origin), file, most_bytes);
 }
 
 std::optional<std::string> first_line_if_there(const fs::path& file) {
   // 16 KiB hold the manifest of nearly every record.
   for (std::uintmax_t bytes = 16384;; bytes *= 16) {
-    auto begin = text_in(read_begin_bounded(file, bytes, Origin::record), file, kMostLogBytes);
+    auto begin = text_in(read_begin_bounded(file, bytes, FileOrigin::record), file, kMostLogBytes);
     if (!begin) return std::nullopt;
     const std::size_t end = begin->find('\n');
     if (end != std::string::npos) return begin->erase(end), begin;
@@ -233,7 +233,7 @@ std::optional<std::string> first_line_if_there(const fs::path& file) {
 std::optional<LastLine> last_line_if_there(const fs::path& file) {
   // 4 KiB hold the last line of nearly every record.
   for (std::uintmax_t bytes = 4096;; bytes *= 16) {
-    Reading reading = read_end_bounded(file, bytes, Origin::record);
+    FileReading reading = read_end_bounded(file, bytes, FileOrigin::record);
     const std::uintmax_t skipped = reading.begin;
     const auto end = text_in(std::move(reading), file, kMostLogBytes);
     if (!end) return std::nullopt;

@@ -71,7 +71,7 @@ std::string read_file(const std::filesystem::path& file, std::uintmax_t most_byt
 /// Returns the content of a file; nullopt if is_there() is false. The file may be a link if `origin` is `user`, but not
 /// if it is `record`.
 std::optional<std::string> read_if_there(const std::filesystem::path& file, std::uintmax_t most_bytes = kMostLogBytes,
-                                         Origin origin = Origin::record);
+                                         FileOrigin origin = FileOrigin::record);
 
 /// Returns the first line of a file that grows by lines, without its line end, and reads only the beginning of the
 /// file. Returns nullopt if there is no file or no complete line. Throws Error as read_if_there() does.

@@ -59,7 +59,7 @@ std::string absence(const Expectation& one, const RunOutcome& run) {
 }
 
 /// Judges one run by a field of its summary.
-Verdict judge_run(const Expectation& one, const RunOutcome& run) {
+ExpectationResult judge_run(const Expectation& one, const RunOutcome& run) {
   const RecordField* field = find_summary_field(one.field);
   if (field != nullptr && field->type == RecordField::Type::text) {
     const std::string text = run.summary ? run.summary->text(one.field) : std::string();
@@ -73,11 +73,11 @@ Verdict judge_run(const Expectation& one, const RunOutcome& run) {
 
 /// Judges each run separately. The verdict names the first run that misses the expectation, and the number of such
 /// runs.
-Verdict judge_each(const Expectation& one, const std::vector<RunOutcome>& runs) {
+ExpectationResult judge_each(const Expectation& one, const std::vector<RunOutcome>& runs) {
   int missed = 0;
   std::string got;
   for (const RunOutcome& run : runs) {
-    Verdict verdict = judge_run(one, run);
+    ExpectationResult verdict = judge_run(one, run);
     if (runs.size() == 1) return verdict;
     if (verdict.holds) continue;
     if (missed++ == 0) got = fmt::format("{} in {}", verdict.got, run.label);
@@ -103,7 +103,7 @@ std::string seeds_words(const std::vector<RunOutcome>& runs) {
 
 /// Judges a statistic over all runs. A run without a value counts as the worst possible value; for `==` the statistic
 /// must hold with -infinity and with +infinity.
-Verdict judge_statistic(const Expectation& one, const std::vector<RunOutcome>& runs) {
+ExpectationResult judge_statistic(const Expectation& one, const std::vector<RunOutcome>& runs) {
   std::vector<double> values;
   std::vector<const RunOutcome*> without;
   for (const RunOutcome& run : runs) {
@@ -116,7 +116,7 @@ Verdict judge_statistic(const Expectation& one, const std::vector<RunOutcome>& r
   if (without.size() == 1 && runs.size() == 1) return {one, false, "no value: " + absence(one, *without.front())};
   std::vector<double> worst{wants_more(one.comparison) ? -kInfinity : kInfinity};
   if (one.comparison == Relation::equal) worst.push_back(-kInfinity);
-  Verdict out{one, true, {}};
+  ExpectationResult out{one, true, {}};
   for (const double end : worst) {
     std::vector<double> sorted = values;
     sorted.insert(sorted.end(), without.size(), end);
@@ -133,7 +133,7 @@ Verdict judge_statistic(const Expectation& one, const std::vector<RunOutcome>& r
   return out;
 }
 
-Verdict judge_count(const Expectation& one, const std::vector<RunOutcome>& runs) {
+ExpectationResult judge_count(const Expectation& one, const std::vector<RunOutcome>& runs) {
   const auto failed =
       std::count_if(runs.begin(), runs.end(), [](const RunOutcome& run) { return !run.failure.empty(); });
   return {one, satisfies(static_cast<double>(failed), one.comparison, one.bound),
@@ -163,8 +163,9 @@ std::string xml_text(const std::string& text) {
 
 }  // namespace
 
-std::vector<Verdict> judge(const std::vector<Expectation>& expectations, const std::vector<RunOutcome>& runs) {
-  std::vector<Verdict> verdicts;
+std::vector<ExpectationResult> judge(const std::vector<Expectation>& expectations,
+                                     const std::vector<RunOutcome>& runs) {
+  std::vector<ExpectationResult> verdicts;
   for (const Expectation& one : expectations) {
     verdicts.push_back(one.field == kFailedRuns           ? judge_count(one, runs)
                        : one.statistic == Statistic::each ? judge_each(one, runs)
@@ -173,23 +174,23 @@ std::vector<Verdict> judge(const std::vector<Expectation>& expectations, const s
   return verdicts;
 }
 
-std::string verdict_line(const Verdict& verdict) {
+std::string verdict_line(const ExpectationResult& verdict) {
   const Expectation& one = verdict.expectation;
   return fmt::format("{}: expected {} {}, got {}", one.place, one.key, one.wanted, verdict.got);
 }
 
 std::vector<TestCase> test_cases(const std::string& suite, const std::vector<RunOutcome>& runs,
-                                 const std::vector<Verdict>& verdicts) {
+                                 const std::vector<ExpectationResult>& verdicts) {
   std::vector<TestCase> cases;
   // If `failed_runs` is fulfilled, failed runs do not fail the suite.
-  const bool tolerated = std::any_of(verdicts.begin(), verdicts.end(), [](const Verdict& one) {
+  const bool tolerated = std::any_of(verdicts.begin(), verdicts.end(), [](const ExpectationResult& one) {
     return one.expectation.field == kFailedRuns && one.holds;
   });
   for (const RunOutcome& run : runs) {
     const std::optional<double> seconds = run.summary ? run.summary->number("wall_seconds") : std::nullopt;
     cases.push_back({suite, run.name, seconds.value_or(0.0), run.failure, tolerated});
   }
-  for (const Verdict& verdict : verdicts) {
+  for (const ExpectationResult& verdict : verdicts) {
     const Expectation& one = verdict.expectation;
     cases.push_back({suite + ".expect", one.key + " " + one.wanted, 0.0,
                      verdict.holds ? std::string() : verdict_line(verdict), false});

@@ -22,7 +22,7 @@ struct RunOutcome {
 };
 
 /// An expectation, and whether it is fulfilled.
-struct Verdict {
+struct ExpectationResult {
   Expectation expectation;
   bool holds = false;
   std::string got;  ///< "11", "3.2 cm in job 4", "no value: ..."
@@ -31,10 +31,10 @@ struct Verdict {
 /// Judges `runs` (at least one). An expectation of a field must hold in every run. In a statistic, a run that failed or
 /// has no finite value counts as the worst possible value. If the runs have different seeds, the verdict contains the
 /// number of seeds. `failed_runs` is the number of runs that failed.
-std::vector<Verdict> judge(const std::vector<Expectation>& expectations, const std::vector<RunOutcome>& runs);
+std::vector<ExpectationResult> judge(const std::vector<Expectation>& expectations, const std::vector<RunOutcome>& runs);
 
 /// Returns a line such as "file:line:column: expected median(object_taps) >= 12, got 11".
-std::string verdict_line(const Verdict& verdict);
+std::string verdict_line(const ExpectationResult& verdict);
 
 /// A test case of JUnit, which continuous integration displays.
 struct TestCase {
@@ -47,7 +47,7 @@ struct TestCase {
 
 /// Returns one test case per run and one per expectation. `suite` is the name of the experiment.
 std::vector<TestCase> test_cases(const std::string& suite, const std::vector<RunOutcome>& runs,
-                                 const std::vector<Verdict>& verdicts);
+                                 const std::vector<ExpectationResult>& verdicts);
 
 /// Returns a JUnit XML document with one suite. Bytes that XML 1.0 does not allow become U+FFFD.
 std::string junit_xml(const std::string& suite, const std::vector<TestCase>& cases);

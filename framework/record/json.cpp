@@ -145,10 +145,10 @@ void append_quoted(std::string& out, std::string_view text) {
 }
 
 /// Writes the separator and the indentation before each value of a list or map.
-class Next {
+class JsonSeparator {
  public:
   /// `indent`: line break and indentation of the list itself; "" to write all values in one line.
-  explicit Next(const std::string& indent) : indent_(indent.empty() ? "" : indent + "  ") {}
+  explicit JsonSeparator(const std::string& indent) : indent_(indent.empty() ? "" : indent + "  ") {}
   void operator()(std::string& out) {
     out += separator_;
     out += indent_;
@@ -166,7 +166,7 @@ void append(std::string& out, const Tree& tree, const std::string& indent) {
   if (tree.kind == Tree::Kind::null) out += "null";
   if (tree.is_scalar()) tree.quoted ? append_quoted(out, tree.text) : void(out += tree.text);
   if (tree.kind == Tree::Kind::null || tree.is_scalar()) return;
-  Next next(indent);
+  JsonSeparator next(indent);
   out += tree.is_map() ? "{" : "[";
   for (const Tree& item : tree.items) {
     next(out);
@@ -191,7 +191,7 @@ void append(std::string& out, const Scalar& value) {
 /// Appends a map of the consecutive fields from index `field` on whose names begin with `prefix`. Sets `field` to the
 /// index after the last of these fields.
 void append(std::string& out, const Row& row, std::size_t& field, std::string_view prefix, const std::string& indent) {
-  Next next(indent);
+  JsonSeparator next(indent);
   out += "{";
   while (field < row.fields.size()) {
     const std::string_view name = row.fields[field].first;
@@ -222,9 +222,9 @@ std::optional<Row> parse_json_row(const std::string& text, std::string* reason) 
   return std::nullopt;
 }
 
-std::string RowLines::place() const { return fmt::format("{}:{}", file_.string(), number_); }
+std::string JsonLinesReader::place() const { return fmt::format("{}:{}", file_.string(), number_); }
 
-Row RowLines::read(const std::string& line) {
+Row JsonLinesReader::read(const std::string& line) {
   ++number_;
   std::string reason = "is too long: a line has at most 1 MiB";
   std::optional<Row> row;
@@ -259,14 +259,14 @@ JsonList list_of(const std::vector<Row>& rows) {
 
 std::uintmax_t read_json_lines(const std::filesystem::path& file, const std::function<void(Row)>& use) {
   const std::string text = read_file(file);
-  RowLines lines(file);
+  JsonLinesReader lines(file);
   std::size_t begin = 0;
   for (std::size_t end; (end = text.find('\n', begin)) != std::string::npos; begin = end + 1)
     use(lines.read(text.substr(begin, end - begin)));
   return begin;
 }
 
-Tree read_json(const std::filesystem::path& file, Origin origin) {
+Tree read_json(const std::filesystem::path& file, FileOrigin origin) {
   const std::optional<std::string> text = read_if_there(file, kMostManifestBytes, origin);
   if (!text) throw Error(file.string(), "cannot be read");
   return parse_json(*text, file);

@@ -31,9 +31,9 @@ std::vector<Row> rows_of(const Tree& list);
 JsonList list_of(const std::vector<Row>& rows);
 
 /// Reads the lines of a file, which contain one JSON object each, and limits the number of all lines and values.
-class RowLines {
+class JsonLinesReader {
  public:
-  explicit RowLines(std::filesystem::path file) : file_(std::move(file)) {}
+  explicit JsonLinesReader(std::filesystem::path file) : file_(std::move(file)) {}
 
   /// Counts a line that the caller reads itself.
   void skip() { ++number_; }
@@ -58,7 +58,7 @@ std::uintmax_t read_json_lines(const std::filesystem::path& file, const std::fun
 
 /// Returns the JSON object in a file of at most 64 MiB and 100 levels. A file written by to_json() gives the same tree
 /// again. Throws Error.
-Tree read_json(const std::filesystem::path& file, Origin origin = Origin::record);
+Tree read_json(const std::filesystem::path& file, FileOrigin origin = FileOrigin::record);
 
 /// Returns the JSON object in `text`, the content of `file`. Throws Error.
 Tree parse_json(const std::string& text, const std::filesystem::path& file);

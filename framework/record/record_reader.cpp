@@ -22,7 +22,7 @@ namespace {
 /// Names of the values of LineKind.
 constexpr std::array<std::string_view, 9> kKinds{"manifest", "attempt", "setup", "intent", "tap",
                                                  "timing",   "objects", "note",  "end"};
-/// Names of the values of Ending::How.
+/// Names of the values of Ending::EndKind.
 constexpr std::array<const char*, 3> kHows{"done", "failed", "interrupted"};
 
 constexpr const char* kNoEnding =
@@ -39,10 +39,10 @@ std::optional<std::int64_t> count_in(const Row& row, std::string_view name) {
   return number != nullptr ? std::optional(*number) : std::nullopt;
 }
 
-std::optional<Ending::How> how_of(const Row& end) {
+std::optional<Ending::EndKind> how_of(const Row& end) {
   const auto found = std::find(kHows.begin(), kHows.end(), end.text("end"));
   if (found == kHows.end()) return std::nullopt;
-  return static_cast<Ending::How>(found - kHows.begin());
+  return static_cast<Ending::EndKind>(found - kHows.begin());
 }
 
 /// Whether a name is that of a file in the record's own folder, so that a manipulated record cannot name other files.
@@ -55,7 +55,7 @@ std::optional<Ending> ending_of(Row line) {
   constexpr std::string_view kSummary = "summary.";
   constexpr std::string_view kFiles = "files.";
   constexpr std::string_view kBytes = ".bytes";
-  const std::optional<Ending::How> how = how_of(line);
+  const std::optional<Ending::EndKind> how = how_of(line);
   if (!how) return std::nullopt;
   Ending out;
   out.how = *how;
@@ -125,7 +125,7 @@ void add_line(RecordLine line, RunRecord& out) {
 
 }  // namespace
 
-const char* ending_name(Ending::How how) { return kHows[static_cast<std::size_t>(how)]; }
+const char* ending_name(Ending::EndKind how) { return kHows[static_cast<std::size_t>(how)]; }
 
 TapTimes times_of(const Row& row) {
   TapTimes out;
@@ -165,7 +165,7 @@ RecordLine RecordReader::read(std::string_view line) {
 }
 
 void RecordReader::check(const RecordLine& line) {
-  if (end_ == Ending::How::done) refuse("follows the end of a finished run");
+  if (end_ == Ending::EndKind::done) refuse("follows the end of a finished run");
   if (!begun_ && line.kind != LineKind::manifest) refuse("is not the manifest, which must be the first line");
   if (begun_ && line.kind == LineKind::manifest) refuse("is a second manifest");
   if (end_ && line.kind != LineKind::attempt) refuse("follows the end of an attempt but does not start a new one");
@@ -260,7 +260,7 @@ void RecordReader::check_timing(const Row& row) const {
 void RecordReader::check_end(const RecordLine& line) {
   if (!line.end) refuse(kNoEnding);
   end_ = line.end->how;
-  if (end_ != Ending::How::done || line.row.number("summary.taps") == static_cast<double>(taps_)) return;
+  if (end_ != Ending::EndKind::done || line.row.number("summary.taps") == static_cast<double>(taps_)) return;
   refuse(fmt::format("ends a run of {} taps, but the taps before it are {}: a line is missing",
                      line.row.cell("summary.taps"), taps_));
 }
@@ -302,7 +302,7 @@ RecordEnd read_record_end(const fs::path& directory) {
 
 int attempts_in_row(const fs::path& directory) {
   std::string text;
-  // A record that cannot be read counts as no attempts, unless the file system fails; HeldRecord reports the error
+  // A record that cannot be read counts as no attempts, unless the file system fails; RecordWriter reports the error
   // later.
   const auto trouble = catch_error([&] { text = read_if_there(directory / kRecordFile).value_or(""); });
   if (trouble && trouble->kind() == Error::Kind::run) throw *trouble;

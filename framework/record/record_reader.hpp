@@ -55,19 +55,19 @@ LineKind kind_of_line(std::string_view line);
 
 /// The end of a run or of an attempt.
 struct Ending {
-  enum class How { done, failed, interrupted };
-  struct File {
+  enum class EndKind { done, failed, interrupted };
+  struct ListedFile {
     std::string name;  ///< without a folder
     std::uintmax_t bytes = 0;
     std::string hash;
   };
 
-  How how = How::interrupted;
-  std::string reason;       ///< reason of the end
-  Row summary;              ///< empty for an interrupted run
-  std::vector<File> files;  ///< files next to the record that were made from it
+  EndKind how = EndKind::interrupted;
+  std::string reason;             ///< reason of the end
+  Row summary;                    ///< empty for an interrupted run
+  std::vector<ListedFile> files;  ///< files next to the record that were made from it
 };
-const char* ending_name(Ending::How how);
+const char* ending_name(Ending::EndKind how);
 
 struct RecordLine {
   LineKind kind = LineKind::other;
@@ -100,7 +100,7 @@ class RecordReader {
   void check_timing(const Row& row) const;
   void check_end(const RecordLine& line);
 
-  RowLines lines_;
+  JsonLinesReader lines_;
   bool begun_ = false;  ///< the manifest was read
   std::int64_t attempts_ = 0;
   bool set_up_ = false;     ///< whether the last attempt has its setup
@@ -108,7 +108,7 @@ class RecordReader {
   std::int64_t taps_ = 0;   ///< number of taps with a result
   bool announced_ = false;  ///< whether the next tap was announced
   LineKind last_ = LineKind::other;
-  std::optional<Ending::How> end_;  ///< nullopt unless the last line is an `end`
+  std::optional<Ending::EndKind> end_;  ///< nullopt unless the last line is an `end`
 };
 
 /// Content of a record.

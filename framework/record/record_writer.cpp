@@ -18,10 +18,10 @@ namespace fs = std::filesystem;
 
 std::string now_text() { return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::chrono::system_clock::now())); }
 
-HeldRecord::HeldRecord(const fs::path& directory)
+RecordWriter::RecordWriter(const fs::path& directory)
     : directory_(directory), lock_(make_folder(directory) / kRecordFile) {}
 
-const RunRecord& HeldRecord::before() {
+const RunRecord& RecordWriter::before() {
   if (!before_) {
     before_ = read_run_record(directory_);
     begun_ = before_->manifest.has_value();
@@ -31,7 +31,7 @@ const RunRecord& HeldRecord::before() {
   return *before_;
 }
 
-AppendFile& HeldRecord::log() {
+AppendFile& RecordWriter::log() {
   if (log_) return *log_;
   const std::optional<LastLine> last = last_line_if_there(directory_ / kRecordFile);
   AppendFile file = lock_.append_file();
@@ -42,12 +42,12 @@ AppendFile& HeldRecord::log() {
   return log_.emplace(std::move(file));
 }
 
-void HeldRecord::append(const std::string& lines, bool sync) {
+void RecordWriter::append(const std::string& lines, bool sync) {
   check_held();
   log().append(lines, sync);
 }
 
-void HeldRecord::clear() {
+void RecordWriter::clear() {
   check_held();
   log().cut(0);
   RunRecord nothing;
@@ -57,13 +57,13 @@ void HeldRecord::clear() {
   attempts_ = 0;
 }
 
-void HeldRecord::add_manifest(const Tree& manifest, bool sync) {
+void RecordWriter::add_manifest(const Tree& manifest, bool sync) {
   before();  // read the record before it has its first line
   append(to_json_line(manifest) + "\n", sync);
   begun_ = true;
 }
 
-void HeldRecord::add_attempt(const Row& attempt) {
+void RecordWriter::add_attempt(const Row& attempt) {
   const auto taps = static_cast<std::int64_t>(before().taps.size());
   check_held();
   log();  // deletes an incomplete last line
@@ -78,16 +78,16 @@ void HeldRecord::add_attempt(const Row& attempt) {
   ended_ = false;
 }
 
-void HeldRecord::add_setup(bool announces, const Tree& models, bool sync) {
+void RecordWriter::add_setup(bool announces, const Tree& models, bool sync) {
   Tree line = Tree::map({{"setup", Tree::scalar(std::to_string(attempts_))},
                          {"announces", Tree::scalar(announces ? "true" : "false")},
                          {"models", models}});
   append(to_json_line(line) + "\n", sync);
 }
 
-void HeldRecord::add_tap(const Row& tap, bool sync) { append(to_json_line(tap) + "\n", sync); }
+void RecordWriter::add_tap(const Row& tap, bool sync) { append(to_json_line(tap) + "\n", sync); }
 
-void HeldRecord::add_timing(const TapTimes& times) {
+void RecordWriter::add_timing(const TapTimes& times) {
   Tree line = Tree::map({{"timing", Tree::scalar(std::to_string(times.tap))}});
   for (std::size_t i = 0; i < kPhases; ++i)
     line.at(kPhaseNames[i]) = Tree::scalar(fmt::format("{:.9f}", times.seconds[i]));
@@ -96,18 +96,18 @@ void HeldRecord::add_timing(const TapTimes& times) {
   append(to_json_line(line) + "\n", false);
 }
 
-void HeldRecord::add_objects(const std::vector<Row>& objects, bool sync) {
+void RecordWriter::add_objects(const std::vector<Row>& objects, bool sync) {
   if (!objects.empty()) append(to_json_line(Row{{{"objects", list_of(objects)}}}) + "\n", sync);
 }
 
-void HeldRecord::add_note(const std::string& kind, const Row& note, bool sync) {
+void RecordWriter::add_note(const std::string& kind, const Row& note, bool sync) {
   Row row;
   row.add("note", kind);
   row.fields.insert(row.fields.end(), note.fields.begin(), note.fields.end());
   append(to_json_line(row) + "\n", sync);
 }
 
-void HeldRecord::add_end(const Ending& ending, bool sync) {
+void RecordWriter::add_end(const Ending& ending, bool sync) {
   Row row;
   row.add("end", std::string(ending_name(ending.how)));
   row.add("attempt", attempts_);
@@ -115,7 +115,7 @@ void HeldRecord::add_end(const Ending& ending, bool sync) {
   row.add("reason", ending.reason);
   for (const auto& [name, value] : ending.summary.fields) row.add("summary." + name, value);
   Tree files = Tree::map();
-  for (const Ending::File& one : ending.files) {
+  for (const Ending::ListedFile& one : ending.files) {
     files.at(one.name) =
         Tree::map({{"bytes", Tree::scalar(std::to_string(one.bytes))}, {"hash", Tree::quote(one.hash)}});
   }
@@ -127,6 +127,6 @@ void HeldRecord::add_end(const Ending& ending, bool sync) {
   log().flush();
 }
 
-void HeldRecord::sync_name() const { sync_names(directory_); }
+void RecordWriter::sync_name() const { sync_names(directory_); }
 
 }  // namespace palpate

@@ -18,11 +18,11 @@ namespace palpate {
 /// Appends complete lines with one system call each, and never changes a line. The methods that write throw Error if
 /// another process may be writing too (see FileLock::check()) or if writing fails. The record is then unchanged, unless
 /// only the sync failed.
-class HeldRecord {
+class RecordWriter {
  public:
   /// Makes the directory if it does not exist, and locks its record. Throws Error of kind `busy` if another process
   /// holds it.
-  explicit HeldRecord(const std::filesystem::path& directory);
+  explicit RecordWriter(const std::filesystem::path& directory);
 
   /// Returns what earlier processes recorded. Reads the record at the first call only. Throws Error as RecordReader
   /// does.

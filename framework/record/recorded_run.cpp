@@ -46,7 +46,7 @@ RunIdentity read_identity(const fs::path& directory) {
 Tree read_run_config(const fs::path& directory) {
   const fs::path file = directory / "config.yaml";
   if (!is_there(file)) throw Error(directory.string(), "is not a run directory", "it has no config.yaml");
-  Tree config = read_yaml(file, Origin::record);
+  Tree config = read_yaml(file, FileOrigin::record);
   mark_complete(config);
   return config;
 }
@@ -54,7 +54,7 @@ Tree read_run_config(const fs::path& directory) {
 std::map<std::string, std::string> recorded_origins(const fs::path& directory) {
   std::map<std::string, std::string> out;
   const fs::path file = directory / "config.yaml";
-  const Reading reading = read_bounded(file, kMostConfigBytes, Origin::record);
+  const FileReading reading = read_bounded(file, kMostConfigBytes, FileOrigin::record);
   if (!reading) return out;
   const std::vector<std::string> lines = places_of_lines(reading.text);
   catch_error([&] {
@@ -96,7 +96,7 @@ RecordedRun read_recorded_run(const PluginHost& host, const fs::path& directory)
                   {},        std::move(record.timings), std::move(record.manifest),
                   {}};
   out.taps = read_taps(out.rows, record.file);
-  if (record.end && record.end->how != Ending::How::interrupted) out.summary = std::move(record.end->summary);
+  if (record.end && record.end->how != Ending::EndKind::interrupted) out.summary = std::move(record.end->summary);
   return out;
 }
 

@@ -87,10 +87,10 @@ std::unique_ptr<Experiment> build_experiment(const ResolvedConfig& config, const
 /// Records the end of a run that could not be resumed. A run that had failed gets its former ending again. If another
 /// process uses the arm, the attempt ends as interrupted.
 void take_back(RunDirectory& held, const std::optional<Ending>& before, const Error& trouble) {
-  if (before && before->how == Ending::How::failed) {
+  if (before && before->how == Ending::EndKind::failed) {
     held.end(*before);
   } else if (trouble.kind() == Error::Kind::busy) {
-    held.end({Ending::How::interrupted, trouble.what(), {}, {}});
+    held.end({Ending::EndKind::interrupted, trouble.what(), {}, {}});
   }
 }
 
@@ -104,10 +104,10 @@ void check_worth_asking(const ResolvedConfig& config, const Experiment& experime
 }
 
 /// Throws Error if the backend of the config does not match `taps`. `command` is "run" or "resume", for the hint.
-void check_who_taps(const ResolvedConfig& config, Taps taps, const std::string& command) {
+void check_who_taps(const ResolvedConfig& config, TapMaker taps, const std::string& command) {
   const std::string& backend = config.options.backend.type;
   const bool by_caller = backend == kCaller;
-  if (by_caller == (taps == Taps::by_caller)) return;
+  if (by_caller == (taps == TapMaker::by_caller)) return;
   if (by_caller) {
     throw Error("backend", "the taps of this run are made by the caller's own program, not by palpate",
                 command == "run" ? "run it with palpate.Experiment(...) in Python, or choose another backend"
@@ -166,7 +166,7 @@ std::string failure_in(const Part& part) {
   }
 }
 
-RunReport report_done(const RunEnvironment& environment, RunDirectory& held) {
+RunConclusion report_done(const RunEnvironment& environment, RunDirectory& held) {
   return {held.path(), true, false, held.before().end->summary, restore_files(environment, held)};
 }
 
@@ -256,7 +256,7 @@ Run::Run(const Stopwatch& watch, const RunEnvironment& environment, const Resolv
       experiment_(std::move(experiment)),
       recorder_(std::make_unique<Recorder>(*this, std::move(observers))) {}
 
-Run::Run(const ResolvedConfig& config, RunReport report) : config_(config), report_(std::move(report)) {}
+Run::Run(const ResolvedConfig& config, RunConclusion report) : config_(config), report_(std::move(report)) {}
 
 Run::~Run() = default;
 
@@ -317,10 +317,10 @@ std::unique_ptr<Run> Run::resume(const RunEnvironment& environment, const Resolv
   const fs::path& directory = held->path();
   const RunRecord& before = held->before();
   const std::optional<Ending> end = before.end;
-  if (end && end->how == Ending::How::done)
+  if (end && end->how == Ending::EndKind::done)
     return std::unique_ptr<Run>(new Run(config, report_done(environment, *held)));
   check_who_taps(config, options.taps, "resume");
-  if (end && end->how == Ending::How::failed && !options.retry_failed) {
+  if (end && end->how == Ending::EndKind::failed && !options.retry_failed) {
     throw Error(directory.string(), fmt::format("this run failed: {}", end->reason), "resume it with --retry-failed",
                 Error::Kind::run);
   }
@@ -376,7 +376,7 @@ Belief& Run::look(const QuantitySet& quantities) {
   return copy_->belief();
 }
 
-const RunReport& Run::run() {
+const RunConclusion& Run::run() {
   if (!is_finished()) end(failure_in([&] { experiment_->run(*recorder_); }));
   return *report_;
 }
@@ -409,7 +409,7 @@ void Run::tell(TapResult result) {
   if (!failure.empty()) end(failure);
 }
 
-const RunReport& Run::finish() {
+const RunConclusion& Run::finish() {
   if (!is_finished()) {
     if (tap_) throw Error(fmt::format("tap {}", tap_->number()), "is pending", "call tell() with its result first");
     experiment_->stop("ended by the caller");
@@ -422,7 +422,7 @@ const RunReport& Run::finish() {
 /// everything is written.
 void Run::end(std::string failure) {
   tap_.reset();
-  RunReport& report = report_.emplace();  // a failed run is finished, too
+  RunConclusion& report = report_.emplace();  // a failed run is finished, too
   report.directory = directory_->path();
   RunResult result;
   if (failure.empty()) failure = failure_in([&] { result = experiment_->result(); });
@@ -437,7 +437,7 @@ void Run::end(std::string failure) {
   report.summary = summary_list().row(summary);
   directory_->write_made(kTapsTable, to_csv(directory_->rows()));
   if (result.interrupted) {
-    directory_->end({Ending::How::interrupted, result.stop_reason, {}, {}});
+    directory_->end({Ending::EndKind::interrupted, result.stop_reason, {}, {}});
     return;
   }
   if (config_.options.log.surface && failure.empty()) {
@@ -445,20 +445,20 @@ void Run::end(std::string failure) {
     directory_->write_made(name, text);
   }
   directory_->write_objects(object_rows(summary));
-  directory_->end({failure.empty() ? Ending::How::done : Ending::How::failed,
+  directory_->end({failure.empty() ? Ending::EndKind::done : Ending::EndKind::failed,
                    failure.empty() ? result.stop_reason : failure,
                    report.summary,
                    {}});
   if (!failure.empty()) throw Error("", failure, {}, Error::Kind::run);
 }
 
-RunReport start_run(const RunEnvironment& environment, const ResolvedConfig& config, const fs::path& directory,
-                    const StartOptions& options, const std::vector<Observer*>& observers) {
+RunConclusion start_run(const RunEnvironment& environment, const ResolvedConfig& config, const fs::path& directory,
+                        const StartOptions& options, const std::vector<Observer*>& observers) {
   return Run::start(environment, config, directory, options, observers)->run();
 }
 
-RunReport resume_run(const RunEnvironment& environment, const fs::path& directory, const ResumeOptions& options,
-                     const std::vector<Observer*>& observers) {
+RunConclusion resume_run(const RunEnvironment& environment, const fs::path& directory, const ResumeOptions& options,
+                         const std::vector<Observer*>& observers) {
   return Run::resume(environment, directory, options, observers)->run();
 }
 
@@ -486,12 +486,12 @@ RestoredFiles restore_files(const RunEnvironment& environment, RunDirectory& hel
   const fs::path& directory = held.path();
   const RunRecord& record = held.before();
   RestoredFiles out;
-  const auto restore = [&](const Ending::File& one, const std::string& text) {
+  const auto restore = [&](const Ending::ListedFile& one, const std::string& text) {
     const bool same = text.size() == one.bytes && hash_of(text) == one.hash;
     if (same) held.write(one.name, text);
     (same ? out.made : out.lost).push_back(one.name);
   };
-  for (const Ending::File& one : record.end->files) {
+  for (const Ending::ListedFile& one : record.end->files) {
     const std::optional<std::string> now = read_if_there(directory / one.name);
     if (now && now->size() == one.bytes && hash_of(*now) == one.hash) continue;
     if (one.name == kTapsTable) {

@@ -33,7 +33,7 @@ struct RunEnvironment {
 /// The name of the backend of runs whose taps are made by a calling program.
 inline constexpr const char* kCaller = "caller";
 /// The maker of the taps of a run: its backend, or the calling program.
-enum class Taps { by_backend, by_caller };
+enum class TapMaker { by_backend, by_caller };
 
 /// The files that were missing in the directory of an ended run, by name.
 struct RestoredFiles {
@@ -42,7 +42,7 @@ struct RestoredFiles {
 };
 
 /// How a run ended.
-struct RunReport {
+struct RunConclusion {
   std::filesystem::path directory;
   bool already_done = false;  ///< nothing was run: the directory held the finished run
   bool interrupted = false;   ///< the run can be resumed, and has no summary
@@ -52,7 +52,7 @@ struct RunReport {
 
 struct StartOptions {
   bool force = false;  ///< move an old run aside
-  Taps taps = Taps::by_backend;
+  TapMaker taps = TapMaker::by_backend;
   bool asks_before_taps =
       false;  ///< an observer asks a person before each tap; allowed only if taps cannot be repeated
 };
@@ -60,7 +60,7 @@ struct StartOptions {
 struct ResumeOptions {
   bool retry_failed = false;  ///< resume a failed run too
   bool force = false;         ///< resume a run of another build
-  Taps taps = Taps::by_backend;
+  TapMaker taps = TapMaker::by_backend;
   bool asks_before_taps = false;
 };
 
@@ -90,7 +90,7 @@ class Run {
 
   /// Makes all remaining taps and finishes the run. If the run fails, its summary contains the reason, and an Error of
   /// kind `run` is thrown.
-  const RunReport& run();
+  const RunConclusion& run();
 
   /// Returns the tap that the caller must make, and announces it in the record. Until tell() is called, further calls
   /// return the same tap. `scores`, if not null, replace the scores of the strategy: one finite number per candidate.
@@ -104,7 +104,7 @@ class Run {
   bool is_pending() const { return tap_.has_value(); }
 
   /// Ends the run, even before its budget is reached, and returns its report. Later calls return the same report.
-  const RunReport& finish();
+  const RunConclusion& finish();
   bool is_finished() const { return report_.has_value(); }
 
   /// Returns a belief with the current arrays of these quantities. This is the belief of the run if its readers already
@@ -124,7 +124,7 @@ class Run {
       std::shared_ptr<RunDirectory> directory, std::unique_ptr<Experiment> experiment,
       std::vector<Observer*> observers);
   /// Constructs a run that had already finished when it was started or resumed.
-  Run(const ResolvedConfig& config, RunReport report);
+  Run(const ResolvedConfig& config, RunConclusion report);
   void end(std::string failure);
 
   const RunEnvironment* environment_ = nullptr;
@@ -137,16 +137,16 @@ class Run {
   QuantitySet looked_at_;
   std::unique_ptr<Experiment> copy_;  ///< see look()
   std::optional<TapRecord> tap_;      ///< the pending tap, which the caller must make
-  std::optional<RunReport> report_;
+  std::optional<RunConclusion> report_;
 };
 
 /// Runs `config` in `directory`, as Run::start() and Run::run() do.
-RunReport start_run(const RunEnvironment& environment, const ResolvedConfig& config,
-                    const std::filesystem::path& directory, const StartOptions& options,
-                    const std::vector<Observer*>& observers = {});
+RunConclusion start_run(const RunEnvironment& environment, const ResolvedConfig& config,
+                        const std::filesystem::path& directory, const StartOptions& options,
+                        const std::vector<Observer*>& observers = {});
 /// Resumes the run in `directory`.
-RunReport resume_run(const RunEnvironment& environment, const std::filesystem::path& directory,
-                     const ResumeOptions& options, const std::vector<Observer*>& observers = {});
+RunConclusion resume_run(const RunEnvironment& environment, const std::filesystem::path& directory,
+                         const ResumeOptions& options, const std::vector<Observer*>& observers = {});
 
 /// Returns the models of this config, each with its readers. Builds no backend except the simulator, because other
 /// backends may connect to a device. Models that only such a backend reads are left out. Throws Error if the experiment

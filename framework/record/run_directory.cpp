@@ -20,8 +20,8 @@ namespace {
 
 RunStatus status_of(std::optional<Ending> end, bool begun) {
   RunStatus out;
-  if (end && end->how != Ending::How::interrupted) {
-    out.state = end->how == Ending::How::done ? RunStatus::State::done : RunStatus::State::failed;
+  if (end && end->how != Ending::EndKind::interrupted) {
+    out.state = end->how == Ending::EndKind::done ? RunStatus::State::done : RunStatus::State::failed;
     out.stop_reason = end->reason;
     out.end = std::move(end);
   } else if (begun) {
@@ -38,7 +38,7 @@ RecordEnd end_of(const fs::path& directory) {
     if (trouble->kind() == Error::Kind::run) throw *trouble;  // such an error does not show the state of the run
     out.begun = true;
     out.end.emplace();
-    out.end->how = Ending::How::failed;
+    out.end->how = Ending::EndKind::failed;
     out.end->reason = trouble->what();
     out.end->summary.add("status", "failed");
     out.end->summary.add("stop_reason", trouble->what());
@@ -47,7 +47,7 @@ RecordEnd end_of(const fs::path& directory) {
 }
 
 std::optional<Row> summary_of(RecordEnd record) {
-  if (!record.end || record.end->how == Ending::How::interrupted) return std::nullopt;
+  if (!record.end || record.end->how == Ending::EndKind::interrupted) return std::nullopt;
   return std::move(record.end->summary);
 }
 
@@ -80,7 +80,7 @@ RunStatus read_standing(const fs::path& directory) {
 bool lacks_files(const fs::path& directory, const Ending& end) {
   // A power cut may leave summary.json empty. Its size is not recorded, so no other damage of this file is detected.
   if (size_if_there((directory / kSummaryFile).c_str()).value_or(0) == 0) return true;
-  return std::any_of(end.files.begin(), end.files.end(), [&](const Ending::File& one) {
+  return std::any_of(end.files.begin(), end.files.end(), [&](const Ending::ListedFile& one) {
     return size_if_there((directory / one.name).c_str()) != one.bytes;
   });
 }
@@ -178,7 +178,7 @@ void RunDirectory::write_made(const std::string& name, const std::string& text) 
 }
 
 void RunDirectory::end(Ending ending) {
-  for (Ending::File& one : std::exchange(made_, {})) ending.files.push_back(std::move(one));
+  for (Ending::ListedFile& one : std::exchange(made_, {})) ending.files.push_back(std::move(one));
   record_.add_end(ending, sync_);
   if (!ending.summary.fields.empty()) write(kSummaryFile, to_json(ending.summary));
 }
@@ -195,7 +195,7 @@ void RunDirectory::fail(const std::string& reason) {
   row.add("id", id);
   row.add("status", "failed");
   row.add("stop_reason", reason);
-  end({Ending::How::failed, reason, row, {}});
+  end({Ending::EndKind::failed, reason, row, {}});
 }
 
 }  // namespace palpate

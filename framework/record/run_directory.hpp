@@ -141,10 +141,10 @@ class RunDirectory final {
 
  private:
   std::filesystem::path path_;
-  HeldRecord record_;
+  RecordWriter record_;
   std::vector<Row> rows_;
   std::array<double, kPhases> total_{};
-  std::vector<Ending::File> made_;
+  std::vector<Ending::ListedFile> made_;
   bool announce_ = false;
   bool sync_ = false;
 };

@@ -70,7 +70,7 @@ class RunReplay {
 ReadPlan readers_from_first_tap(const std::string& name, const QuantitySet& quantities, bool is_optional = false);
 
 /// A number that differs between the record and the replay.
-struct Difference {
+struct ReplayDifference {
   int tap = 0;  ///< 0 for a field of the summary
   std::string field;
   std::string recorded;
@@ -82,7 +82,7 @@ struct ReplayReport {
   int numbers = 0;  ///< number of compared values
   /// Reason why numbers that need the truth are not compared; nullopt if they are. See RunReplay::truth_lost().
   std::optional<Error> truth_lost;
-  std::vector<Difference> differences;
+  std::vector<ReplayDifference> differences;
 };
 
 /// Replays a run: chooses each recorded tap again with the same models, and compares all numbers bit for bit, as text.

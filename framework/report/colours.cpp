@@ -14,7 +14,7 @@ const std::vector<std::string>& palette_stops(Palette palette) {
   return palette == Palette::viridis ? viridis : cividis;
 }
 
-Colours deviation_colours(double least, double most) {
+ColourScale deviation_colours(double least, double most) {
   constexpr double kFloor = 1e-6;  // metres; a micrometre is below the resolution of any measurement
   // smallest ratio of `most` to `least` for a logarithmic scale; with a larger ratio, a linear scale would hide
   // differences between low values

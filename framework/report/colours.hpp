@@ -27,7 +27,7 @@ enum class Palette {
 const std::vector<std::string>& palette_stops(Palette palette);
 
 /// The colour scale that one or more panels share.
-struct Colours {
+struct ColourScale {
   Palette palette = Palette::viridis;
   double low = 0.0;
   double high = 1.0;
@@ -38,6 +38,6 @@ struct Colours {
 /// Returns the scale for standard deviations of the height from `least` to `most` metres, in centimetres. The scale is
 /// logarithmic if the ratio of `most` to `least` is large. On a linear scale all tapped positions would then look
 /// alike, because untapped positions have a standard deviation up to a hundred times as large.
-Colours deviation_colours(double least, double most);
+ColourScale deviation_colours(double least, double most);
 
 }  // namespace palpate

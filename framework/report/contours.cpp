@@ -30,8 +30,8 @@ struct Plane {
 /// `side`. The first node is `from` metres along the line. Returns 0.5 if no interval begins or ends between the nodes.
 /// This can happen where a grid line is tangent to the surface, because the intervals along rows and along columns may
 /// then disagree.
-double share_between(const std::vector<Stretch>& intervals, double from, double side) {
-  for (const Stretch& one : intervals) {
+double share_between(const std::vector<LineInterval>& intervals, double from, double side) {
+  for (const LineInterval& one : intervals) {
     for (const double end : {one.begin, one.end}) {
       if (end >= from && end <= from + side) return (end - from) / side;
     }
@@ -72,12 +72,12 @@ PlaneCrossings cross_plane(const Scene& scene, const Plane& plane) {
   for (std::size_t axis = 0; axis < 2; ++axis) {
     for (int line = 1; line + 1 < plane.nodes[1 - axis]; ++line) {
       const Vector3d begin = plane.origin + line * plane.side * plane.axes[1 - axis];
-      const std::vector<Stretch> intervals = scene.intervals({begin, plane.axes[axis]});
+      const std::vector<LineInterval> intervals = scene.intervals({begin, plane.axes[axis]});
       any = any || !intervals.empty();
       const auto node = [&](int k) { return axis == 0 ? plane.node(k, line) : plane.node(line, k); };
       const auto within = [&](double at) {
         return std::any_of(intervals.begin(), intervals.end(),
-                           [&](const Stretch& one) { return one.begin <= at && at <= one.end; });
+                           [&](const LineInterval& one) { return one.begin <= at && at <= one.end; });
       };
       for (int k = 1; axis == 0 && k + 1 < plane.nodes[0]; ++k) out.inside[node(k)] = within(k * plane.side);
       for (int k = 0; k + 1 < plane.nodes[axis]; ++k) {

@@ -37,16 +37,16 @@ std::vector<Curve> named_curves(const History& history, const Numbers& numbers) 
   return out;
 }
 
-struct NamedState {
+struct NamedGp {
   const char* name;
   const char* field;  ///< prefix of the fields in the record, with the dot
 };
-constexpr std::array<NamedState, 3> kStates{
+constexpr std::array<NamedGp, 3> kStates{
     {{"height GP", "height_gp."}, {"label GP", "label_gp."}, {"surface GP", "surface_gp."}}};
 
 Row likelihoods_of(const Row& state) {
   Row out;
-  for (const NamedState& one : kStates) {
+  for (const NamedGp& one : kStates) {
     if (const auto value = state.number(std::string(one.field) + "log_marginal_likelihood")) out.add(one.name, *value);
   }
   return out;
@@ -190,7 +190,7 @@ Curves curves_of(const RecordedRun& recording, const History& history) {
         return moment.taps > 0 ? std::optional(static_cast<double>(result.object_taps) / moment.taps) : std::nullopt;
       }));
   add("Log marginal likelihood", "nat", CurveAxis::free, named_curves(history, likelihoods_of));
-  for (const NamedState& state : kStates) {
+  for (const NamedGp& state : kStates) {
     add(fmt::format("Hyperparameters of the {}", state.name), "SI units", CurveAxis::logarithmic,
         named_curves(history, [&](const Row& row) { return parameters_of(row, state.field); }));
   }

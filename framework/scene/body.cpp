@@ -46,7 +46,7 @@ Line Body::own(const Line& line) const {
 
 double Body::first_intersection(const Line& line) const { return shape_->first_intersection(own(line)); }
 
-std::vector<Stretch> Body::intervals(const Line& line) const { return shape_->intervals(own(line)); }
+std::vector<LineInterval> Body::intervals(const Line& line) const { return shape_->intervals(own(line)); }
 
 double Body::highest() const { return shape_->support(untilted(0.0, 0.0, 1.0)) + lift_; }
 

@@ -28,7 +28,7 @@ class Body {
   double first_intersection(const Line& line) const;
 
   /// Returns the intervals of a line inside the body, in ascending order.
-  std::vector<Stretch> intervals(const Line& line) const;
+  std::vector<LineInterval> intervals(const Line& line) const;
 
   /// Returns the height of the highest point above the desk.
   double highest() const;

@@ -173,7 +173,7 @@ void list(Push& effect, Fields& fields) {
 
 /// An effect as a group of options.
 template <class Effect>
-struct Group : Options {
+struct EffectGroup : Options {
   Effect effect;
   void list(Fields& fields) override { palpate::list(effect, fields); }
 };
@@ -182,7 +182,7 @@ struct Group : Options {
 template <class Effect>
 void section(Fields& fields, std::optional<Effect>& effect, const Field& field) {
   bool present = effect.has_value();
-  Group<Effect> group;
+  EffectGroup<Effect> group;
   group.effect = effect.value_or(Effect{});
   fields.section(present, group, field);
   effect = present ? std::optional(group.effect) : std::nullopt;

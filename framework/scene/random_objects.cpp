@@ -37,7 +37,7 @@ struct DrawOptions : Options {
 };
 
 /// The map `{draw: {...}}`, which may replace a list of objects.
-struct DrawnObjects : Options {
+struct DrawBlockOptions : Options {
   DrawOptions draw;
   void list(Fields& fields) override {
     fields.section(draw, Field("draw", "random draw of the objects from the seed").needed());
@@ -60,7 +60,7 @@ int replace_ranges(Tree& tree, const std::string& path, const std::function<doub
 
 /// Reads `described`, the value of scene.objects, into `options`, after replace_ranges() has replaced each range.
 /// Returns the largest number of ranges in one object.
-int read_drawn(DrawnObjects& options, Tree described, const std::function<double(int)>& share,
+int read_drawn(DrawBlockOptions& options, Tree described, const std::function<double(int)>& share,
                const PluginSource& plugins) {
   int most = 0;
   if (Tree* of = const_cast<Tree*>(described.find_path("draw.of"))) {
@@ -84,7 +84,7 @@ bool draws_objects(const Tree& config) {
 
 void draw_objects(Tree& config, std::uint64_t seed, const PluginSource& plugins) {
   Tree& slot = config.at_path(kObjects, config.place);
-  DrawnObjects options;
+  DrawBlockOptions options;
   const auto at_ends = [&](double end, int other) {
     return read_drawn(
         options, slot, [=](int range) { return range == other ? 1.0 - end : end; }, plugins);

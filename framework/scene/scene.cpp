@@ -14,9 +14,9 @@
 namespace palpate {
 namespace {
 
-class Desk final : public Scene {
+class DeskScene final : public Scene {
  public:
-  Desk(const SceneOptions& options, std::uint64_t seed, const PluginFactory& factory)
+  DeskScene(const SceneOptions& options, std::uint64_t seed, const PluginFactory& factory)
       : area_{options.area.width, options.area.depth},
         desk_(options.desk),
         margin_(options.min_object_height),
@@ -54,11 +54,11 @@ class Desk final : public Scene {
     return first;
   }
 
-  std::vector<Stretch> intervals(const Line& line) const override {
+  std::vector<LineInterval> intervals(const Line& line) const override {
     const Line above{line.origin - Eigen::Vector3d(0.0, 0.0, desk_), line.direction};
-    std::vector<Stretch> all;
+    std::vector<LineInterval> all;
     for (const Body& body : bodies_) {
-      const std::vector<Stretch> one = body.intervals(above);
+      const std::vector<LineInterval> one = body.intervals(above);
       all.insert(all.end(), one.begin(), one.end());
     }
     return joined(std::move(all));
@@ -92,7 +92,7 @@ class Desk final : public Scene {
     if (!effects_.push) return nullptr;
     std::vector<Body> bodies = bodies_;
     if (!push_about(bodies, area_, *effects_.push, context_.seed, taps)) return nullptr;
-    auto out = std::make_unique<Desk>(*this);
+    auto out = std::make_unique<DeskScene>(*this);
     out->bodies_ = std::move(bodies);
     return out;
   }
@@ -110,7 +110,7 @@ class Desk final : public Scene {
 
 std::unique_ptr<const Scene> build_scene(const SceneOptions& options, std::uint64_t seed,
                                          const PluginFactory& factory) {
-  return std::make_unique<Desk>(options, seed, factory);
+  return std::make_unique<DeskScene>(options, seed, factory);
 }
 
 }  // namespace palpate

@@ -27,7 +27,7 @@ bool is_below(const std::string& key, const std::string& group) {
   return key == group || boost::starts_with(key, group + ".");
 }
 
-SourceLocation place_of(const Axis& axis) { return axis.values.front().place; }
+SourceLocation place_of(const SweepAxis& axis) { return axis.values.front().place; }
 
 void check_block(const std::string& name, const SourceLocation& place) {
   static const std::vector<std::string> names{"grid", "zip", "list", "sobol", "where"};
@@ -52,18 +52,18 @@ std::vector<Combination> product(const std::vector<Combination>& slower, const s
 }
 
 /// Returns the keys of a map with their values.
-std::vector<Axis> read_axes(const Tree& described, const std::string& name, const char* hint, ValueCount& count) {
+std::vector<SweepAxis> read_axes(const Tree& described, const std::string& name, const char* hint, ValueCount& count) {
   if (!described.is_map()) {
     throw Error(described.place.text(), fmt::format("{}: expects a map of keys to values", name), hint);
   }
-  std::vector<Axis> axes;
+  std::vector<SweepAxis> axes;
   for (const Tree::Entry& entry : described.entries) {
     axes.push_back({entry.key, expand_values(entry.value, entry.key, count), entry.value});
   }
   return axes;
 }
 
-void check_key(const Axis& axis) {
+void check_key(const SweepAxis& axis) {
   const std::string place = place_of(axis).text();
   check_path(axis.key, place);
   if (is_below(axis.key, "expect")) {
@@ -96,9 +96,9 @@ void take_out(Tree& blocks, const std::string& key) {
 
 }  // namespace
 
-SweepWords parse_sweep_words(const std::vector<std::string>& words) {
+SweepOverrides parse_sweep_words(const std::vector<std::string>& words) {
   check_given_once(words);
-  SweepWords out;
+  SweepOverrides out;
   ValueCount count;
   for (const std::string& word : words) {
     const std::string path = word.substr(0, word.find('='));
@@ -112,7 +112,7 @@ SweepWords parse_sweep_words(const std::vector<std::string>& words) {
       out.blocks.emplace_back(name, std::move(block.value));
       continue;
     }
-    Axis axis = parse_axis(word, count);
+    SweepAxis axis = parse_axis(word, count);
     if (!is_below(path, "expect")) {
       out.axes.push_back(std::move(axis));
       continue;
@@ -143,8 +143,8 @@ SweepDescription::Block SweepDescription::read_block(const std::string& name, co
         {read_axes(described, full, "write seed: range(0,10), one key per line", count), name == "zip"});
   }
   if (name == "zip") {
-    const std::vector<Axis>& axes = block.parts.front().axes;
-    for (const Axis& axis : axes) {
+    const std::vector<SweepAxis>& axes = block.parts.front().axes;
+    for (const SweepAxis& axis : axes) {
       if (axis.values.size() == axes.front().values.size()) continue;
       throw Error(place_of(axis).text(),
                   fmt::format("sweep.zip: '{}' has {} values, '{}' has {}", axis.key, axis.values.size(),
@@ -155,7 +155,7 @@ SweepDescription::Block SweepDescription::read_block(const std::string& name, co
   return block;
 }
 
-SweepDescription::SweepDescription(const Tree* config, const SweepWords& words)
+SweepDescription::SweepDescription(const Tree* config, const SweepOverrides& words)
     : written_(config != nullptr ? *config : Tree::map()) {
   if (!written_.is_map()) {
     throw Error(written_.place.text(), "sweep: expects a map", "write sweep: {grid: {key: [values]}}");
@@ -165,7 +165,7 @@ SweepDescription::SweepDescription(const Tree* config, const SweepWords& words)
   auto& blocks = written_.entries;
   blocks.erase(std::remove_if(blocks.begin(), blocks.end(), [](const auto& block) { return is_empty(block.value); }),
                blocks.end());
-  for (const Axis& axis : words.axes) {
+  for (const SweepAxis& axis : words.axes) {
     take_out(written_, axis.key);
     if (written_.find("grid") == nullptr) written_.at("grid") = Tree::map();
     if (Tree& grid = written_.at("grid"); grid.is_map()) grid.at(axis.key) = axis.written;
@@ -184,10 +184,10 @@ SweepDescription::SweepDescription(const Tree* config, const SweepWords& words)
 }
 
 void SweepDescription::list_keys() {
-  std::map<std::string, std::pair<const Axis*, const Block*>> seen;
+  std::map<std::string, std::pair<const SweepAxis*, const Block*>> seen;
   for (const Block& block : blocks_) {
     for (const Part& part : block.parts) {
-      for (const Axis& axis : part.axes) {
+      for (const SweepAxis& axis : part.axes) {
         check_key(axis);
         const auto [twin, is_new] = seen.try_emplace(axis.key, &axis, &block);
         if (is_new) keys_.push_back(axis.key);
@@ -207,7 +207,7 @@ void SweepDescription::combine() {
     std::vector<Combination> own;
     for (const Part& part : block.parts) {
       std::vector<Combination> rows{{}};
-      for (const Axis& axis : part.axes) {
+      for (const SweepAxis& axis : part.axes) {
         const std::size_t size = part.together ? axis.values.size() : rows.size() * axis.values.size();
         const std::size_t all = (own.size() + size) * combinations_.size();
         if (all > kMaxCombinations || all * keys_.size() > kMaxSettings) {
@@ -241,26 +241,26 @@ bool SweepDescription::depends(const std::string& name, const std::string& choic
   return name != choice && name != scope && config_keys().is_decided(name, scope);
 }
 
-bool SweepDescription::wanted(const Combination& combination, const Condition::Values& base) const {
+bool SweepDescription::wanted(const Combination& combination, const WhereCondition::Values& base) const {
   if (where_.empty()) return true;
   const std::string* place = nullptr;
-  const Condition::Values value_of = [&](const std::string& name) -> std::optional<Condition::Value> {
+  const WhereCondition::Values value_of = [&](const std::string& name) -> std::optional<WhereCondition::Value> {
     const auto said = std::find_if(combination.begin(), combination.end(),
                                    [&](const SweptValue& one) { return one.axis->key == name; });
-    if (said != combination.end()) return Condition::Value{condition_text(said->value())};
+    if (said != combination.end()) return WhereCondition::Value{condition_text(said->value())};
     const bool swept = std::find(keys_.begin(), keys_.end(), name) != keys_.end();
     for (const std::string& choice : keys_) {
       if (!depends(name, choice)) continue;
-      if (swept) return Condition::Value{};  // another item of the list sets this name
+      if (swept) return WhereCondition::Value{};  // another item of the list sets this name
       // Nearly any word could be an option of a strategy, so an unknown word is a value.
       if (choice == kStrategy && !base(name)) continue;
       throw Error(*place, fmt::format("'{}' depends on '{}', which is swept", name, choice),
                   fmt::format("sweep it too, or compare '{}'", choice));
     }
-    std::optional<Condition::Value> value = base(name);
-    return value || !swept ? value : Condition::Value{};
+    std::optional<WhereCondition::Value> value = base(name);
+    return value || !swept ? value : WhereCondition::Value{};
   };
-  return std::all_of(where_.begin(), where_.end(), [&](const Condition& where) {
+  return std::all_of(where_.begin(), where_.end(), [&](const WhereCondition& where) {
     place = &where.place();
     return where.holds(value_of, keys_);
   });

@@ -15,19 +15,19 @@
 namespace palpate {
 
 /// The words after `palpate sweep CONFIG`, by their kind.
-struct SweepWords {
-  std::vector<Axis> axes;                            ///< KEY=VALUES
+struct SweepOverrides {
+  std::vector<SweepAxis> axes;                       ///< KEY=VALUES
   std::vector<std::pair<std::string, Tree>> blocks;  ///< sweep.BLOCK=...
   std::vector<Override> expectations;                ///< `expect...=...`: not swept; apply to the whole sweep
 };
 
 /// Throws Error for invalid words.
-SweepWords parse_sweep_words(const std::vector<std::string>& words);
+SweepOverrides parse_sweep_words(const std::vector<std::string>& words);
 
 /// The value of one key in a combination.
 struct SweptValue {
-  const Axis* axis;   ///< belongs to the SweepDescription
-  std::size_t digit;  ///< index of the value
+  const SweepAxis* axis;  ///< belongs to the SweepDescription
+  std::size_t digit;      ///< index of the value
 
   const Tree& value() const { return axis->values[digit]; }
 };
@@ -49,7 +49,7 @@ class SweepDescription {
   /// `config`: the config's `sweep:`, or null. A block in `words` replaces the block of the config. A key in `words` is
   /// removed from zip, sobol and list, and set in the grid. Throws Error for an invalid description, and for more than
   /// a million combinations.
-  SweepDescription(const Tree* config, const SweepWords& words);
+  SweepDescription(const Tree* config, const SweepOverrides& words);
   SweepDescription(const SweepDescription&) = delete;  // not copyable, because combinations point to the axes
   SweepDescription& operator=(const SweepDescription&) = delete;
 
@@ -61,7 +61,7 @@ class SweepDescription {
   /// Returns whether `where` keeps a combination. `base` returns the values that the config has for names without a
   /// value in the combination. Throws Error for an unknown name, and for a name that depends on a swept choice
   /// (kernel.alpha if kernel is swept).
-  bool wanted(const Combination& combination, const Condition::Values& base) const;
+  bool wanted(const Combination& combination, const WhereCondition::Values& base) const;
   /// Returns the place of the first condition; "" if there is none.
   std::string where_place() const;
 
@@ -71,7 +71,7 @@ class SweepDescription {
  private:
   /// Axes whose values are combined: values with the same index (`together`), or every value with every other.
   struct Part {
-    std::vector<Axis> axes;
+    std::vector<SweepAxis> axes;
     bool together = false;
   };
   /// Parts whose combinations are listed one part after the other.
@@ -87,7 +87,7 @@ class SweepDescription {
 
   Tree written_;
   std::vector<Block> blocks_;
-  std::vector<Condition> where_;
+  std::vector<WhereCondition> where_;
   std::vector<std::string> keys_;
   std::vector<Combination> combinations_;
 };

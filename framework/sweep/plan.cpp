@@ -24,17 +24,17 @@ namespace {
 
 /// The use of one swept key by the jobs planned so far.
 struct KeyUse {
-  const Axis* asker = nullptr;     ///< axis that sets the key; null if no combination has set it yet
-  bool takes_part = false;         ///< whether some job has the option
-  std::set<std::string> siblings;  ///< options with the same parent as the key, for the hint of an error
+  const SweepAxis* asker = nullptr;  ///< axis that sets the key; null if no combination has set it yet
+  bool takes_part = false;           ///< whether some job has the option
+  std::set<std::string> siblings;    ///< options with the same parent as the key, for the hint of an error
 };
 
 /// Makes the jobs of a sweep one by one.
-class Planner {
+class SweepPlanner {
  public:
   /// `shared`: overrides of all jobs, applied before those of their combination.
-  Planner(Composer& composer, const PluginHost& host, const fs::path& file, const std::vector<std::string>& keys,
-          const std::vector<Override>& shared)
+  SweepPlanner(Composer& composer, const PluginHost& host, const fs::path& file, const std::vector<std::string>& keys,
+               const std::vector<Override>& shared)
       : composer_(composer), host_(host), file_(file), shared_(shared), keys_(keys), uses_(keys.size()) {
     for (std::size_t i = 0; i < keys_.size(); ++i) key_numbers_.emplace(keys_[i], i);
   }
@@ -238,7 +238,7 @@ Tree written_config(const std::filesystem::path& file, const Tree& base, const s
 }
 
 /// Returns the overrides of all jobs: the expectations, and no recorded surfaces unless `base` sets the key.
-std::vector<Override> shared_overrides(const SweepWords& words, const Tree& base) {
+std::vector<Override> shared_overrides(const SweepOverrides& words, const Tree& base) {
   std::vector<Override> out = words.expectations;
   if (base.find_path("log.surface") == nullptr) {
     out.push_back({"log.surface", Tree::scalar("false")});
@@ -251,7 +251,7 @@ std::vector<Override> shared_overrides(const SweepWords& words, const Tree& base
 
 SweepPlan plan_sweep(Composer& composer, const PluginHost& host, const fs::path& named,
                      const std::vector<std::string>& words, const fs::path& runs, const JobSink& sink) {
-  const SweepWords read = parse_sweep_words(words);
+  const SweepOverrides read = parse_sweep_words(words);
   const fs::path file = composer.found(named);
   const Tree base = composer.compose(file, read.expectations);
   const SweepDescription description(base.find("sweep"), read);
@@ -263,14 +263,14 @@ SweepPlan plan_sweep(Composer& composer, const PluginHost& host, const fs::path&
   // errors in the config are found when the jobs are resolved.
   std::optional<ResolvedConfig> alone;
   catch_error([&] { alone = resolve_experiment(base, host); });
-  const Condition::Values base_value = [&](const std::string& name) -> std::optional<Condition::Value> {
+  const WhereCondition::Values base_value = [&](const std::string& name) -> std::optional<WhereCondition::Value> {
     if (first_key(name) == "sweep") return std::nullopt;
     const Tree* found = base.find_path(name);
     if (found == nullptr && alone) found = alone->tree.find_path(name);
-    return found != nullptr ? std::optional(Condition::Value{condition_text(*found)}) : std::nullopt;
+    return found != nullptr ? std::optional(WhereCondition::Value{condition_text(*found)}) : std::nullopt;
   };
   std::optional<ResolvedConfig> first;
-  Planner planner(composer, host, file, description.keys(), shared);
+  SweepPlanner planner(composer, host, file, description.keys(), shared);
   for (const Combination& combination : description.combinations()) {
     if (!description.wanted(combination, base_value)) continue;
     planner.add(combination, [&](const Job& job, const ResolvedConfig& config) {

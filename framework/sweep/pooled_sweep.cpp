@@ -44,8 +44,9 @@ struct PoolRecord {
   std::string name;
 };
 
-/// One job of the pooled sweep. `source` and `setting` are indices into Pool::sources_ and Pool::settings_.
-struct PoolMember {
+/// One job of the pooled sweep. `source` and `setting` are indices into PooledSweepBuilder::sources_ and
+/// PooledSweepBuilder::settings_.
+struct PooledJob {
   const Job* job = nullptr;
   std::size_t source = 0;
   std::size_t setting = 0;
@@ -66,9 +67,9 @@ PoolRecord read_source(const fs::path& directory) {
 }
 
 /// Builds one sweep from several records.
-class Pool {
+class PooledSweepBuilder {
  public:
-  Pool(const std::vector<fs::path>& records, const PoolTexts& by) : by_(by) {
+  PooledSweepBuilder(const std::vector<fs::path>& records, const PoolTexts& by) : by_(by) {
     for (const fs::path& one : records) sources_.push_back(read_source(one));
     collect_members();
     collect_keys();
@@ -92,7 +93,7 @@ class Pool {
           continue;
         }
         ++repeated;
-        PoolMember& first = members_[at->second];
+        PooledJob& first = members_[at->second];
         if (!has_ended(first.source, *first.job)) {
           if (has_ended(source, job)) first = {&job, source, setting_of(source, job)};
         } else if (has_ended(source, job)) {
@@ -109,7 +110,7 @@ class Pool {
   /// Throws Error for two runs with the same id but different taps, which cannot count as one job.
   static void check_same_taps(const fs::path& first, const fs::path& second) {
     const auto taps = [](const fs::path& directory) {
-      return read_bounded(directory / kTapsTable, kMostLogBytes, Origin::record).text;
+      return read_bounded(directory / kTapsTable, kMostLogBytes, FileOrigin::record).text;
     };
     const std::string one = taps(first);
     const std::string other = taps(second);
@@ -205,7 +206,7 @@ class Pool {
       if (!is_one_of(names, one.name)) names.push_back(one.name);
     }
     sweep.name = fmt::format("{}", fmt::join(names, ", "));
-    for (const PoolMember& one : members_) {
+    for (const PooledJob& one : members_) {
       const PoolRecord& source = sources_[one.source];
       Job job{static_cast<int>(sweep.jobs.size()), one.job->id, values_[one.setting],
               job_directory(source.sweep, *one.job)};
@@ -215,7 +216,7 @@ class Pool {
     note_scenes();
   }
 
-  std::string seed_of(const PoolMember& member) const {
+  std::string seed_of(const PooledJob& member) const {
     const PoolTexts& keys = sources_[member.source].sweep.keys;
     const auto at = std::find(keys.begin(), keys.end(), kSeed);
     if (at != keys.end()) return member.job->values[static_cast<std::size_t>(at - keys.begin())];
@@ -230,7 +231,7 @@ class Pool {
       if (!is_scene(keys_[key])) continue;
       std::map<std::string, std::set<std::size_t>> having;
       std::set<std::size_t> all;
-      for (const PoolMember& one : members_) {
+      for (const PooledJob& one : members_) {
         having[values_[one.setting][key]].insert(one.source);
         all.insert(one.source);
       }
@@ -251,7 +252,7 @@ class Pool {
   std::vector<PoolRecord> sources_;
   std::map<std::pair<std::size_t, std::map<std::string, std::string>>, std::size_t> known_settings_;
   std::vector<PooledSetting> settings_;
-  std::vector<PoolMember> members_;
+  std::vector<PooledJob> members_;
   PoolTexts keys_;                 ///< the last key is the seed
   std::vector<PoolTexts> values_;  ///< values of each setting, one per key except the seed
   PooledSweep out_;
@@ -262,7 +263,7 @@ class Pool {
 PooledSweep read_pooled(const std::vector<fs::path>& records, const PoolTexts& by) {
   if (records.empty()) throw Error("", "no sweep and no run is given", "name at least one");
   if (records.size() == 1 && is_sweep(records.front())) return {read_sweep(records.front()), {}};
-  return Pool(records, by).take();
+  return PooledSweepBuilder(records, by).take();
 }
 
 fs::path common_folder(const std::vector<fs::path>& directories) {

@@ -44,7 +44,7 @@ std::int64_t read_samples(const Tree& described, const SourceLocation& place) {
 
 }  // namespace
 
-std::vector<Axis> sobol_axes(const Tree& described, ValueCount& count) {
+std::vector<SweepAxis> sobol_axes(const Tree& described, ValueCount& count) {
   if (!described.is_map()) {
     throw Error(described.place.text(), "sweep.sobol: expects samples and keys",
                 "write sobol: {samples: 64, keys: {kernel.length_scale: \"log_uniform(1 cm, 10 cm)\"}}");
@@ -63,7 +63,7 @@ std::vector<Axis> sobol_axes(const Tree& described, ValueCount& count) {
                 "write keys: {kernel.length_scale: \"log_uniform(1 cm, 10 cm)\"}");
   }
   count.add(keys->entries.size() * static_cast<std::size_t>(samples), keys->place, "sweep.sobol");
-  std::vector<Axis> axes;
+  std::vector<SweepAxis> axes;
   std::vector<ContinuousRange> ranges;
   // A digital shift combines all points with one random bit pattern per axis by XOR, as for the initial taps. The
   // points stay evenly spread, and the first point no longer has the lower end of every range.

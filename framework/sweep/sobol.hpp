@@ -12,6 +12,6 @@ namespace palpate {
 /// mm)"}}`. Returns one axis per key with `samples` values (1 to 100000). The i-th values of all axes are the i-th
 /// point of a Sobol sequence. Its digital shift is fixed, so that the points are the same every time, and a smaller
 /// sample is the beginning of a larger one. Throws Error.
-std::vector<Axis> sobol_axes(const Tree& described, ValueCount& count);
+std::vector<SweepAxis> sobol_axes(const Tree& described, ValueCount& count);
 
 }  // namespace palpate

@@ -17,7 +17,7 @@ namespace palpate {
 
 namespace {
 
-using Value = Condition::Value;
+using Value = WhereCondition::Value;
 /// Value of a condition; nullopt means undecided.
 using Decision = std::optional<bool>;
 
@@ -44,11 +44,11 @@ std::string meant_by(const std::string& sign) {
 }
 
 /// A recursive-descent parser (or, and, not, comparison) that evaluates the condition while it reads.
-class Reader {
+class ConditionParser {
  public:
   /// Without `value_of`, only the syntax is checked.
-  Reader(const std::string& text, const std::string& place, const Condition::Values& value_of = nullptr,
-         const std::vector<std::string>& known = {})
+  ConditionParser(const std::string& text, const std::string& place, const WhereCondition::Values& value_of = nullptr,
+                  const std::vector<std::string>& known = {})
       : text_(text), place_(place), value_of_(value_of), known_(known) {
     cut();
   }
@@ -108,7 +108,7 @@ class Reader {
 
   /// Reads parts that are joined by `word`. A part with the value `decides` decides the result, and the rest is only
   /// parsed. Otherwise an undecided part makes the result undecided.
-  Decision joined(bool decides, const char* word, Decision (Reader::*part)(int, bool), int depth, bool asked) {
+  Decision joined(bool decides, const char* word, Decision (ConditionParser::*part)(int, bool), int depth, bool asked) {
     Decision out = (this->*part)(depth, asked);
     while (take(word)) {
       const Decision next = (this->*part)(depth, asked && out != decides);
@@ -117,8 +117,8 @@ class Reader {
     return out;
   }
 
-  Decision any(int depth, bool asked) { return joined(true, "or", &Reader::all, depth, asked); }
-  Decision all(int depth, bool asked) { return joined(false, "and", &Reader::one, depth, asked); }
+  Decision any(int depth, bool asked) { return joined(true, "or", &ConditionParser::all, depth, asked); }
+  Decision all(int depth, bool asked) { return joined(false, "and", &ConditionParser::one, depth, asked); }
 
   Decision one(int depth, bool asked) {
     if (depth > kMaxDepth) throw refuse("nested too deeply", "at most 100 levels");
@@ -190,7 +190,7 @@ class Reader {
 
   const std::string& text_;
   const std::string& place_;
-  const Condition::Values& value_of_;
+  const WhereCondition::Values& value_of_;
   const std::vector<std::string>& known_;
   std::vector<std::string> tokens_;  ///< words, operators, parentheses, and quoted texts with their opening quote
   std::size_t next_ = 0;
@@ -198,20 +198,20 @@ class Reader {
 
 }  // namespace
 
-Condition::Condition(const Tree& text) : place_(text.place.text()), text_(text.text) {
+WhereCondition::WhereCondition(const Tree& text) : place_(text.place.text()), text_(text.text) {
   if (!text.is_scalar()) throw Error(place_, "a condition is a text", kHowTo);
-  Reader(text_, place_).read();
+  ConditionParser(text_, place_).read();
 }
 
-std::optional<Condition> Condition::of_command_line(const std::optional<std::string>& text) {
+std::optional<WhereCondition> WhereCondition::of_command_line(const std::optional<std::string>& text) {
   if (!text) return std::nullopt;
   Tree tree = Tree::scalar(*text, true);
   tree.place.file = std::make_shared<const std::string>("command line: --where");
-  return Condition(tree);
+  return WhereCondition(tree);
 }
 
-bool Condition::holds(const Values& value_of, const std::vector<std::string>& known) const {
-  return Reader(text_, place_, value_of, known).read() == true;
+bool WhereCondition::holds(const Values& value_of, const std::vector<std::string>& known) const {
+  return ConditionParser(text_, place_, value_of, known).read() == true;
 }
 
 }  // namespace palpate

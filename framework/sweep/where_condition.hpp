@@ -18,7 +18,7 @@ namespace palpate {
 /// The left side of a comparison is a name. The right side is a name if that name exists, and else a value. Numbers are
 /// compared with their units (1 cm == 10 mm); other values are texts and can only be compared with == and !=. A quoted
 /// value is always a text and may contain any character.
-class Condition {
+class WhereCondition {
  public:
   /// The value of a name.
   struct Value {
@@ -29,9 +29,9 @@ class Condition {
   using Values = std::function<std::optional<Value>(const std::string& name)>;
 
   /// Throws Error, with the place of `text`, for an invalid condition.
-  explicit Condition(const Tree& text);
+  explicit WhereCondition(const Tree& text);
   /// Reads the option --where of a command, if it is given.
-  static std::optional<Condition> of_command_line(const std::optional<std::string>& text);
+  static std::optional<WhereCondition> of_command_line(const std::optional<std::string>& text);
 
   /// Returns whether the condition holds.
   ///

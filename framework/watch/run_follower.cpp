@@ -24,14 +24,14 @@ namespace {
 /// Largest number of values in all stored maps. They take about 10 MB in a page, which every browser can hold.
 constexpr std::size_t kMostNumbers = 4'000'000;
 
-struct Position {
+struct PagePosition {
   int generation = 0;
   int moments = 0;
   int revision = 0;
 };
 
 /// Parses a position of RunFollower::at(): three numbers. Returns zeros for any other text.
-Position parse_position(const std::string& at) {
+PagePosition parse_position(const std::string& at) {
   static const std::regex form("([0-9]{1,9})\\.([0-9]{1,9})\\.([0-9]{1,9})");
   std::smatch parts;
   if (!std::regex_match(at, parts, form)) return {};
@@ -151,7 +151,7 @@ std::string RunFollower::page() {
 }
 
 std::optional<std::string> RunFollower::news(const std::string& at) {
-  const Position page = parse_position(at);
+  const PagePosition page = parse_position(at);
   const std::string now = this->at();
   if (now == at) return std::nullopt;
   const int moments = builder_ ? builder_->taps() + 1 : 0;

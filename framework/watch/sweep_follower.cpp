@@ -31,7 +31,7 @@ std::string SweepFollower::page() {
   if (data.contains("trouble"))
     data = {{"name", "sweep"}, {"id", sweep_.directory.filename().string()}, {"waiting", data["trouble"]}};
   data["live"] = std::to_string(revision_);
-  return make_page(palpate_asset_sweep, data, "", PageOf::server);
+  return make_page(palpate_asset_sweep, data, "", PageOrigin::server);
 }
 
 std::optional<std::string> SweepFollower::news(const std::string& at) {

@@ -6,10 +6,10 @@
 
 namespace palpate::acquisitions {
 
-class Weighted final : public Acquisition {
+class WeightedAcquisition final : public Acquisition {
  public:
   using Options = NoOptions;
-  Weighted(const Options&, const Context&) {}
+  WeightedAcquisition(const Options&, const Context&) {}
 
   QuantitySet reads() const override { return {quantity::kUncertainty, quantity::kLabelMean}; }
   void score(const BeliefView& belief, VectorOut out) const override {
@@ -19,7 +19,7 @@ class Weighted final : public Acquisition {
   double prior_scale() const override { return 1.0; }
 };
 
-PALPATE_PLUGIN(Acquisition, Weighted, "weighted",
+PALPATE_PLUGIN(Acquisition, WeightedAcquisition, "weighted",
                "variance of the height times the mean of the label GP, as in the paper")
 
 }  // namespace palpate::acquisitions

@@ -39,10 +39,10 @@ struct CallerOptions : Options {
   }
 };
 
-class Caller final : public Backend {
+class CallerBackend final : public Backend {
  public:
   using Options = CallerOptions;
-  Caller(const Options& options, const Context&) : scene_is_truth_(options.scene_is_truth) {}
+  CallerBackend(const Options& options, const Context&) : scene_is_truth_(options.scene_is_truth) {}
 
   /// Never called in a run by a caller, see Run::tell().
   TapResult tap(const TapRequest&) override {
@@ -57,7 +57,7 @@ class Caller final : public Backend {
   bool scene_is_truth_;
 };
 
-PALPATE_PLUGIN(Backend, Caller, "caller",
+PALPATE_PLUGIN(Backend, CallerBackend, "caller",
                "taps by your own program. The program asks for positions and reports the results")
 
 }  // namespace palpate::backends

@@ -48,7 +48,7 @@ struct ReplayOptions : Options {
 
 namespace {
 
-struct Recorded {
+struct ReplayTap {
   int number = 0;
   TapLine line;
   TapResult result;
@@ -74,7 +74,7 @@ std::string unguarded(const std::string& cell) {
 class Table {
  public:
   explicit Table(const std::string& file) : file_(file) {
-    Reading reading = read_bounded(file, kMostLogBytes, Origin::user);
+    FileReading reading = read_bounded(file, kMostLogBytes, FileOrigin::user);
     const char* const hint = "backend.record names a run directory or a CSV file";
     if (!reading) throw Error(file, words_of(reading, kMostLogBytes).reason, hint);
     drop_byte_order_mark(reading.text);
@@ -182,7 +182,7 @@ double distance_between(const TapLine& one, const TapLine& other) {
 }
 
 /// Reads how far the tool moved along a line that is not from above.
-void read_along(const Table& table, Recorded& tap) {
+void read_along(const Table& table, ReplayTap& tap) {
   const double along = table.number("along", kMissing);
   if (!std::isfinite(tap.line.at(tap.line.length).sum())) throw Error(table.where(), "lacks z, direction or length");
   if (!std::isnan(along)) tap.result.distance = along;
@@ -191,12 +191,12 @@ void read_along(const Table& table, Recorded& tap) {
   tap.result.contact->head<2>() = tap.line.at(along).head<2>();
 }
 
-std::vector<Recorded> read_record(const std::string& path) {
+std::vector<ReplayTap> read_record(const std::string& path) {
   const std::string file = std::filesystem::is_directory(path) ? path + "/taps.csv" : path;
   Table table(file);
-  std::vector<Recorded> taps;
+  std::vector<ReplayTap> taps;
   while (table.next()) {
-    Recorded one{table.count("tap"), read_line(table), {}};
+    ReplayTap one{table.count("tap"), read_line(table), {}};
     const TapLine& line = one.line;
     const Outcome outcome = outcome_of(table.text("outcome"), table.where());
     const double seconds = table.number("robot_seconds", 0.0);
@@ -227,9 +227,9 @@ class Replay final : public Backend {
 
   /// Returns the tap with the same number if it is within the tolerance, else the nearest tap within the tolerance.
   TapResult tap(const TapRequest& request) override {
-    const Recorded* best = nullptr;
+    const ReplayTap* best = nullptr;
     double least = options_.tolerance;
-    for (const Recorded& one : taps_) {
+    for (const ReplayTap& one : taps_) {
       const double distance = distance_between(one.line, request.line);
       if (distance > options_.tolerance) continue;
       if (one.number == request.number) return one.result;
@@ -248,7 +248,7 @@ class Replay final : public Backend {
 
  private:
   ReplayOptions options_;
-  std::vector<Recorded> taps_;
+  std::vector<ReplayTap> taps_;
 };
 
 PALPATE_PLUGIN(Backend, Replay, "replay", "recorded taps, from a run or a table")

@@ -5,15 +5,15 @@
 
 namespace palpate::fitting {
 
-class Fixed final : public Fitting {
+class FixedFitting final : public Fitting {
  public:
   using Options = NoOptions;
-  Fixed(const Options&, const Context&) {}
+  FixedFitting(const Options&, const Context&) {}
 
   bool due(int) const override { return false; }
   FitSummary fit(FitProblem&, Random&) const override { return {false, false, 0.0, 0, "hyperparameters are fixed"}; }
 };
 
-PALPATE_PLUGIN(Fitting, Fixed, "fixed", "fixed hyperparameters from the config, as in the paper")
+PALPATE_PLUGIN(Fitting, FixedFitting, "fixed", "fixed hyperparameters from the config, as in the paper")
 
 }  // namespace palpate::fitting

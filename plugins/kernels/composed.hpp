@@ -28,11 +28,11 @@ struct PartsOptions : Options {
 ///     static void join_slopes(before, own, whole, part);   combines derivatives, one matrix per parameter
 /// In join_slopes(), `before` belongs to the previous parts and `own` to the part. It is called before apply().
 template <class Join>
-class Composed : public Kernel {
+class ComposedKernel : public Kernel {
  public:
   using Options = PartsOptions;
 
-  Composed(const Options& options, const Context& context) {
+  ComposedKernel(const Options& options, const Context& context) {
     for (const PluginChoice& choice : options.kernels) {
       parts_.push_back(context.create<Kernel>(choice));
       counts_.push_back(static_cast<Eigen::Index>(parts_.back()->parameters().size()));

@@ -21,7 +21,7 @@ struct Matern12Shape : PlainShape {
   }
 };
 
-using Matern12 = Stationary<Matern12Shape>;
+using Matern12 = StationaryKernel<Matern12Shape>;
 PALPATE_PLUGIN(Kernel, Matern12, "matern12", "Matern 1/2: rough surfaces, continuous but nowhere differentiable")
 
 }  // namespace palpate::kernels

@@ -30,7 +30,7 @@ struct Matern32Shape : PlainShape {
   }
 };
 
-using Matern32 = Stationary<Matern32Shape>;
+using Matern32 = StationaryKernel<Matern32Shape>;
 PALPATE_PLUGIN(Kernel, Matern32, "matern32", "Matern 3/2: surfaces that are differentiable once, but rough")
 
 }  // namespace palpate::kernels

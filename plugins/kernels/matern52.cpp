@@ -31,7 +31,7 @@ struct Matern52Shape : PlainShape {
   }
 };
 
-using Matern52 = Stationary<Matern52Shape>;
+using Matern52 = StationaryKernel<Matern52Shape>;
 PALPATE_PLUGIN(Kernel, Matern52, "matern52", "Matern 5/2: smooth surfaces that are differentiable twice")
 
 }  // namespace palpate::kernels

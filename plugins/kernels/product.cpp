@@ -22,9 +22,9 @@ struct Multiply {
   }
 };
 
-class Product final : public Composed<Multiply> {
+class Product final : public ComposedKernel<Multiply> {
  public:
-  using Composed::Composed;
+  using ComposedKernel::ComposedKernel;
 
   bool separable() const override {
     return std::all_of(parts_.begin(), parts_.end(), [](const auto& one) { return one->separable(); });

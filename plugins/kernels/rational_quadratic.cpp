@@ -55,7 +55,7 @@ class RationalQuadraticShape {
   double alpha_;
 };
 
-using RationalQuadratic = Stationary<RationalQuadraticShape>;
+using RationalQuadratic = StationaryKernel<RationalQuadraticShape>;
 PALPATE_PLUGIN(Kernel, RationalQuadratic, "rational_quadratic",
                "rational quadratic kernel, for smooth surfaces with a mixture of length scales")
 

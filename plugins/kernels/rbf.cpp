@@ -22,7 +22,7 @@ struct RbfShape : PlainShape {
   }
 };
 
-using Rbf = Stationary<RbfShape>;
+using Rbf = StationaryKernel<RbfShape>;
 PALPATE_PLUGIN(Kernel, Rbf, "rbf", "squared exponential: very smooth surfaces, as in the paper")
 
 }  // namespace palpate::kernels

@@ -15,7 +15,7 @@ struct Add {
   static void join_slopes(const Slopes&, const Own&, const MatrixOut&, const Eigen::MatrixXd&) {}
 };
 
-using Sum = Composed<Add>;
+using Sum = ComposedKernel<Add>;
 PALPATE_PLUGIN(Kernel, Sum, "sum", "sum of kernels, for a surface that is the sum of independent surfaces")
 
 }  // namespace palpate::kernels

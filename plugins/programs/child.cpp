@@ -64,7 +64,7 @@ std::vector<std::pair<pid_t, pid_t>> processes() {
   for (const std::filesystem::path& folder : list_folder("/proc")) {
     const std::string name = folder.filename().string();
     if (name.find_first_not_of("0123456789") != std::string::npos) continue;
-    const std::string line = read_bounded(folder / "stat", kMostSystemBytes, Origin::user).text;
+    const std::string line = read_bounded(folder / "stat", kMostSystemBytes, FileOrigin::user).text;
     // The format is PID (NAME) STATE PARENT ..., where NAME may contain any character.
     const std::size_t behind = line.rfind(')');
     if (behind == std::string::npos || behind + 4 > line.size()) continue;
@@ -76,13 +76,13 @@ std::vector<std::pair<pid_t, pid_t>> processes() {
 
 bool carries(pid_t pid, const std::string& mark) {
   const std::string file = "/proc/" + std::to_string(pid) + "/environ";
-  const std::string all = '\0' + read_bounded(file, kMostSystemBytes, Origin::user).text;
+  const std::string all = '\0' + read_bounded(file, kMostSystemBytes, FileOrigin::user).text;
   return all.find('\0' + mark + '\0') != std::string::npos;
 }
 
 }  // namespace
 
-Child::Child(Program program, const std::string& stderr_file, const Descriptor& kept) : stderr_(stderr_file) {
+Child::Child(ProgramCall program, const std::string& stderr_file, const Descriptor& kept) : stderr_(stderr_file) {
   static std::atomic<int> count{0};
   // Each plugin has a separate copy of this counter. The address of the copy is unique in the process.
   const auto whose = reinterpret_cast<std::uintptr_t>(&count);

@@ -38,7 +38,7 @@ class Child {
   /// Starts `program`. The stderr of the program is appended to the file `stderr_file`. If the name is empty, stderr is
   /// dropped. If `kept` is not empty, the program inherits this descriptor. Throws Error if the program cannot be
   /// started.
-  Child(Program program, const std::string& stderr_file, const Descriptor& kept);
+  Child(ProgramCall program, const std::string& stderr_file, const Descriptor& kept);
   /// Ends the program. Closes its stdin, sends SIGTERM to its group after kGrace, and finally sends SIGKILL to all
   /// descendants. Afterwards, no process of the program remains.
   ~Child();

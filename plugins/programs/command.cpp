@@ -109,9 +109,10 @@ ProgramFingerprint content_of(const std::vector<std::string>& words, const std::
     const bool first = &word == &words.front();
     const bool by_path = first && word.find('/') == std::string::npos;
     const bool interprets = first && is_interpreter(word);
-    Reading reading;
-    if (!found && !interprets && !by_path) reading = read_bounded(fs::path(folder) / word, kMostBytes, Origin::user);
-    const bool there = first ? !interprets : reading.kind != Reading::Kind::absent;
+    FileReading reading;
+    if (!found && !interprets && !by_path)
+      reading = read_bounded(fs::path(folder) / word, kMostBytes, FileOrigin::user);
+    const bool there = first ? !interprets : reading.kind != FileReading::Kind::absent;
     found = found || there || word == "-m" || word == "-c";
     const std::string& text = reading ? reading.text : word;
     all += fmt::format("{} {}:", reading ? "file" : "word", text.size()) + text;

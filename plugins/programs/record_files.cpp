@@ -102,7 +102,7 @@ void write_holder(const Descriptor& lock, pid_t holder) {
 
 std::string read_holder(const std::string& file) {
   constexpr std::uintmax_t kMostBytes = 64;
-  const std::string text = read_bounded(file, kMostBytes, Origin::record).text;
+  const std::string text = read_bounded(file, kMostBytes, FileOrigin::record).text;
   const std::string holder = text.substr(0, text.find('\n'));
   return holder.empty() ? "?" : holder;
 }

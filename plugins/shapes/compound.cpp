@@ -64,10 +64,10 @@ class Compound final : public Shape {
     return first;
   }
 
-  std::vector<Stretch> intervals(const Line& line) const override {
-    std::vector<Stretch> all;
+  std::vector<LineInterval> intervals(const Line& line) const override {
+    std::vector<LineInterval> all;
     for (const Part& part : parts_) {
-      const std::vector<Stretch> one =
+      const std::vector<LineInterval> one =
           part.shape->intervals({part.turned(line.origin - part.at), part.turned(line.direction)});
       all.insert(all.end(), one.begin(), one.end());
     }

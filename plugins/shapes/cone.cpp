@@ -7,11 +7,11 @@ struct ConeOptions : RoundOptions {
   ConeOptions() : RoundOptions(0.12, 0.08) {}
 };
 
-class Cone final : public Round {
+class Cone final : public QuadricSolid {
  public:
   using Options = ConeOptions;
   Cone(const Options& o, const Context&)
-      : Round({{1, 1, -square(o.diameter / (2 * o.height))}, {0, 0, o.height}, 0.0}, o.height),
+      : QuadricSolid({{1, 1, -square(o.diameter / (2 * o.height))}, {0, 0, o.height}, 0.0}, o.height),
         radius_(o.diameter / 2) {}
 
   double support(const Vector3d& direction) const override {

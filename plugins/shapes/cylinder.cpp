@@ -7,11 +7,11 @@ struct CylinderOptions : RoundOptions {
   CylinderOptions() : RoundOptions(0.08, 0.06) {}
 };
 
-class Cylinder final : public Round {
+class Cylinder final : public QuadricSolid {
  public:
   using Options = CylinderOptions;
   Cylinder(const Options& o, const Context&)
-      : Round({{1, 1, 0}, {0, 0, 0}, o.diameter * o.diameter / 4}, o.height), radius_(o.diameter / 2) {}
+      : QuadricSolid({{1, 1, 0}, {0, 0, 0}, o.diameter * o.diameter / 4}, o.height), radius_(o.diameter / 2) {}
 
   double support(const Vector3d& direction) const override {
     return disk_support(direction, radius_) + std::max(0.0, direction.z() * height_);

@@ -13,7 +13,7 @@ struct DomeOptions : RoundOptions {
   }
 };
 
-class Dome final : public Round {
+class Dome final : public QuadricSolid {
  public:
   using Options = DomeOptions;
   Dome(const Options& o, const Context&)
@@ -29,7 +29,7 @@ class Dome final : public Round {
 
  private:
   Dome(const DomeOptions& o, double ball)
-      : Round({{1, 1, 1}, {0, 0, o.height - ball}, ball * ball}, o.height), rim_(o.diameter / 2), ball_(ball) {}
+      : QuadricSolid({{1, 1, 1}, {0, 0, o.height - ball}, ball * ball}, o.height), rim_(o.diameter / 2), ball_(ball) {}
 
   double rim_, ball_;
 };

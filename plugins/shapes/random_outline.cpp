@@ -132,20 +132,20 @@ class RandomOutline final : public Shape {
       if (line.direction.z() > 0.0) return height > 0.0 ? begin : kInfinity;
       return (height - line.origin.z()) / line.direction.z();
     }
-    for (const Stretch& seen : seen_from_above(line)) {
+    for (const LineInterval& seen : seen_from_above(line)) {
       const double hit = change(line, std::max(begin, seen.begin), std::min(end, seen.end), 1.0);
       if (hit < kInfinity) return hit;
     }
     return kInfinity;
   }
 
-  std::vector<Stretch> intervals(const Line& line) const override {
+  std::vector<LineInterval> intervals(const Line& line) const override {
     Interval between;
     between.clip(line.origin.z(), line.direction.z(), 0.0, middle_ + relief_);
     if (between.empty() || std::abs(line.direction.x()) + std::abs(line.direction.y()) < 1e-12)
       return Shape::intervals(line);
-    std::vector<Stretch> all;
-    for (const Stretch& seen : seen_from_above(line)) {
+    std::vector<LineInterval> all;
+    for (const LineInterval& seen : seen_from_above(line)) {
       const double end = std::min(between.end, seen.end);
       double from = std::max(between.begin, seen.begin);
       while (from < end) {
@@ -207,13 +207,13 @@ class RandomOutline final : public Shape {
 
   /// Returns the parts of the line that are within the outline as seen from above. They are between crossings 1 and 2,
   /// 3 and 4, and so on.
-  std::vector<Stretch> seen_from_above(const Line& line) const {
+  std::vector<LineInterval> seen_from_above(const Line& line) const {
     std::array<double, kCorners> crossings{};
     std::size_t count = 0;
     visit_crossings(outline_, {line.origin.x(), line.origin.y()}, {line.direction.x(), line.direction.y()},
                     [&](double x) { crossings[count++] = x; });
     std::sort(crossings.begin(), crossings.begin() + static_cast<std::ptrdiff_t>(count));
-    std::vector<Stretch> out;
+    std::vector<LineInterval> out;
     for (std::size_t i = 0; i + 1 < count; i += 2) out.push_back({crossings[i], crossings[i + 1]});
     return out;
   }

@@ -18,11 +18,11 @@ struct RingOptions : Options {
   }
 };
 
-class Ring final : public Round {
+class Ring final : public QuadricSolid {
  public:
   using Options = RingOptions;
   Ring(const Options& o, const Context&)
-      : Round({{1, 1, 0}, {0, 0, 0}, o.outer * o.outer / 4}, o.height),
+      : QuadricSolid({{1, 1, 0}, {0, 0, 0}, o.outer * o.outer / 4}, o.height),
         inner_{{1, 1, 0}, {0, 0, 0}, o.inner * o.inner / 4},
         radius_(o.outer / 2) {}
 
@@ -35,14 +35,14 @@ class Ring final : public Round {
     return solid.first();
   }
 
-  std::vector<Stretch> intervals(const Line& line) const override {
+  std::vector<LineInterval> intervals(const Line& line) const override {
     const Interval solid = inside(line);
     Interval hole;
     inner_.clip(line, hole);
-    std::vector<Stretch> out;
+    std::vector<LineInterval> out;
     if (hole.empty()) hole.begin = hole.end = kInfinity;
-    const Stretch before{solid.begin, std::min(solid.end, hole.begin)};
-    const Stretch behind{std::max(solid.begin, hole.end), solid.end};
+    const LineInterval before{solid.begin, std::min(solid.end, hole.begin)};
+    const LineInterval behind{std::max(solid.begin, hole.end), solid.end};
     if (before.begin < before.end) out.push_back(before);
     if (behind.begin < behind.end) out.push_back(behind);
     return out;

@@ -135,9 +135,9 @@ inline double disk_support(const Vector3d& direction, double radius) {
 }
 
 /// A quadric that is clipped by the planes z = 0 and z = `height`.
-class Round : public Shape {
+class QuadricSolid : public Shape {
  public:
-  Round(const Quadric& quadric, double height) : quadric_(quadric), height_(height) {}
+  QuadricSolid(const Quadric& quadric, double height) : quadric_(quadric), height_(height) {}
 
   double first_intersection(const Line& line) const override { return inside(line).first(); }
 

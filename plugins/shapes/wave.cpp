@@ -55,9 +55,9 @@ class Wave final : public Shape {
     return kInfinity;
   }
 
-  std::vector<Stretch> intervals(const Line& line) const override {
+  std::vector<LineInterval> intervals(const Line& line) const override {
     const Interval box = box_interval(line);
-    std::vector<Stretch> all;
+    std::vector<LineInterval> all;
     for (double from = box.begin; from < box.end;) {
       const double to = std::min(box.end, next_turn(line, from));
       const bool within = clearance(line, from) <= 0.0;

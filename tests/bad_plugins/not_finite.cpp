@@ -210,7 +210,7 @@ class Shape final : public palpate::Shape, Spoilt {
   using Options = broken::Options;
   Shape(const Options& options, const palpate::Context&) : Spoilt(options) {}
   double first_intersection(const palpate::Line& line) const override {
-    const palpate::Stretch in = within(line);
+    const palpate::LineInterval in = within(line);
     // Infinity is a valid result for a line without intersection.
     if (is("first_intersection")) return std::isnan(bad()) ? bad() : -bad();
     return in.begin < in.end ? in.begin : kInfinity;
@@ -223,8 +223,8 @@ class Shape final : public palpate::Shape, Spoilt {
     const bool inside = std::abs(s) <= kHalf && std::abs(t) <= kHalf;
     return number("top", inside ? 2.0 * kHalf : -kInfinity);
   }
-  std::vector<palpate::Stretch> intervals(const palpate::Line& line) const override {
-    palpate::Stretch in = within(line);
+  std::vector<palpate::LineInterval> intervals(const palpate::Line& line) const override {
+    palpate::LineInterval in = within(line);
     if (!(in.begin < in.end)) return {};
     in.end = number("intervals", in.end);
     return {in};
@@ -232,8 +232,8 @@ class Shape final : public palpate::Shape, Spoilt {
 
  private:
   static constexpr double kHalf = 0.04;
-  static palpate::Stretch within(const palpate::Line& line) {
-    palpate::Stretch in{-kInfinity, kInfinity};
+  static palpate::LineInterval within(const palpate::Line& line) {
+    palpate::LineInterval in{-kInfinity, kInfinity};
     for (int axis = 0; axis < 3; ++axis) {
       const double least = axis < 2 ? -kHalf : 0.0;
       const double a = (least - line.origin(axis)) / line.direction(axis);

@@ -46,7 +46,7 @@ class PlannerBench {
   /// Returns the path straight down at `place` from the height of travel.
   Path down(const Target& place) const { return planner.column(place, kMiddle, 0.135, -0.02, 0.03); }
 
-  Arm arm;
+  ArmKinematics arm;
   Planner planner;
 };
 
@@ -55,7 +55,7 @@ inline Snapshot sound(double now, const Joints& joints) {
   Snapshot out;
   out.now = now;
   out.joints = JointReading{{now, now + 5.0}, joints};  // the robot's clock differs
-  const Pose gripper = Arm({0.0, 0.0, 0.025}).tip(joints);
+  const Pose gripper = ArmKinematics({0.0, 0.0, 0.025}).tip(joints);
   // A real sensor never repeats a value exactly.
   const long period = std::lround(100.0 * now);
   out.endpoint =

@@ -88,7 +88,7 @@ class BodyBench {
   }
 
   std::unique_ptr<const Scene> scene;
-  baxter::Arm tool;
+  baxter::ArmKinematics tool;
   Eigen::Isometry3d frame;  ///< of the scene's frame in `base`
   fake_baxter::Body body;
   baxter::Joints target;

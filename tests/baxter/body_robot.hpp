@@ -94,7 +94,7 @@ class BodyRobot final : public Robot {
     heard_.now = body.now();
     const auto told = [&](FaultKind kind) {
       const fake_baxter::Fault* fault = body.active(kind);
-      return fault != nullptr ? std::optional<Setting>({fault->amount, "/other_program"}) : std::nullopt;
+      return fault != nullptr ? std::optional<ReceivedSetting>({fault->amount, "/other_program"}) : std::nullopt;
     };
     heard_.speed_ratio = told(FaultKind::speed_ratio);
     heard_.command_timeout = told(FaultKind::command_timeout);
@@ -132,7 +132,7 @@ class BodyRobot final : public Robot {
     latest = next;
   }
 
-  Arm gripper_;
+  ArmKinematics gripper_;
   fake_baxter::Delivery delivery_;
   Snapshot heard_;
 };

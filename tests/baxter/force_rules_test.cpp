@@ -18,7 +18,7 @@ using test::kZero;
 using test::Rules;
 using testing::AllOf;
 using testing::HasSubstr;
-using Then = Fault::Then;
+using AllowedAction = Fault::AllowedAction;
 
 /// A robot that sends `messages` forces per period of 10 ms, of which the driver sees the last.
 class Sender {
@@ -67,7 +67,7 @@ TEST(AFrozenForce, IsNoticedAfterTenOfTheTimesInWhichTheRobotRenewsItOrFourThatT
     ASSERT_THAT(robot.send(rules, 120, renewed(every)), IsNothing()) << every;
     const double last = renewed(every)(robot.sent() - 1);
     const std::optional<Fault> fault = robot.send(rules, 100, [&](long) { return last; });
-    EXPECT_THAT(fault, IsFault("exactly the same force", Then::hold));
+    EXPECT_THAT(fault, IsFault("exactly the same force", AllowedAction::hold));
     EXPECT_LE(robot.taken(), periods + 1) << every << " of " << messages << " a period";
     EXPECT_GE(robot.taken(), periods - every) << "the latest may have been sent again before";
   }
@@ -92,7 +92,7 @@ TEST(AForce, ThatIsRenewedSeldomEndsNoRunByOneNoisyValue) {
     const auto noisy = [every](long number) { return number < every ? 30.0 : renewed(every)(number); };
     EXPECT_THAT(robot.send(rules, 2 * every, noisy), IsNothing()) << every;
     const auto pressed = [every](long number) { return 30.0 + renewed(every)(number); };
-    EXPECT_THAT(robot.send(rules, 3 * every, pressed), IsFault("more than force_stop allows", Then::retreat));
+    EXPECT_THAT(robot.send(rules, 3 * every, pressed), IsFault("more than force_stop allows", AllowedAction::retreat));
     EXPECT_GT(robot.taken(), 2 * every) << "three renewals, however often each was sent";
   }
 }
@@ -101,7 +101,7 @@ TEST(AForce, ThatIsRenewedTooSeldomToBeSafeIsToldWithHowOften) {
   Rules rules;
   Sender robot;
   const std::optional<Fault> fault = robot.send(rules, 100, renewed(15));
-  EXPECT_THAT(fault, IsFault("with a new force only 3 times in the last 0.5 s, 4 are needed", Then::hold));
+  EXPECT_THAT(fault, IsFault("with a new force only 3 times in the last 0.5 s, 4 are needed", AllowedAction::hold));
 }
 
 TEST(AForce, ThatIsRenewedLessThanHalfAsOftenAsBeforeIsToldWithHowOften) {
@@ -110,8 +110,8 @@ TEST(AForce, ThatIsRenewedLessThanHalfAsOftenAsBeforeIsToldWithHowOften) {
     Sender robot;
     ASSERT_THAT(robot.send(rules, 200, renewed(before)), IsNothing()) << before;
     const std::optional<Fault> fault = robot.send(rules, 60, renewed(after));
-    EXPECT_THAT(fault, IsFault("with a new force only", Then::hold)) << before;
-    EXPECT_THAT(fault, IsFault((std::to_string(needed) + " are needed").c_str(), Then::hold)) << before;
+    EXPECT_THAT(fault, IsFault("with a new force only", AllowedAction::hold)) << before;
+    EXPECT_THAT(fault, IsFault((std::to_string(needed) + " are needed").c_str(), AllowedAction::hold)) << before;
   }
 }
 
@@ -123,8 +123,8 @@ TEST(AForce, ThatComesInBurstsIsCountedByTheMessageAndNotByTheLook) {
 }
 
 /// Simulates an arm that rises by `step` m per period with a force `press` in newtons as a function of the period.
-/// `sign`: see MotionGuard::Rise.
-std::optional<Fault> rising(double sign, const MotionGuard::Rise& rise, const std::function<double(int)>& press,
+/// `sign`: see MotionGuard::RiseLimits.
+std::optional<Fault> rising(double sign, const MotionGuard::RiseLimits& rise, const std::function<double(int)>& press,
                             double step = 0.001) {
   Rules rules;
   Sender robot;
@@ -139,39 +139,41 @@ std::optional<Fault> rising(double sign, const MotionGuard::Rise& rise, const st
 
 TEST(AnArmThatGoesUp, IsHeldByWhatPullsAndByNothingElse) {
   for (const double sign : {-1.0, 1.0}) {
-    const MotionGuard::Rise rise{1.0, sign, 6.0};
+    const MotionGuard::RiseLimits rise{1.0, sign, 6.0};
     EXPECT_THAT(rising(sign, rise, [](int) { return 30.0; }), IsNothing()) << "it presses still";
     EXPECT_THAT(rising(sign, rise, [](int) { return -5.5; }), IsNothing()) << "its joints rub";
     EXPECT_THAT(rising(sign, rise, [](int period) { return period % 3 == 0 ? -5.0 : -9.0; }), IsNothing()) << "noise";
-    EXPECT_THAT(rising(sign, rise, [](int period) { return 10.0 - 0.5 * period; }),
-                AllOf(IsFault("the tool is caught: it is pulled with ", Then::hold),
-                      IsFault("at (10.0, 10.0, ", Then::hold), IsFault("free it by hand", Then::hold)));
+    EXPECT_THAT(
+        rising(sign, rise, [](int period) { return 10.0 - 0.5 * period; }),
+        AllOf(IsFault("the tool is caught: it is pulled with ", AllowedAction::hold),
+              IsFault("at (10.0, 10.0, ", AllowedAction::hold), IsFault("free it by hand", AllowedAction::hold)));
   }
 }
 
 TEST(AnArmThatGoesUp, FollowsAZeroThatChangesWithThePoseAndNoSpring) {
-  const MotionGuard::Rise rise{1.0, -1.0, 6.0, MotionGuard::Zero::follows};
+  const MotionGuard::RiseLimits rise{1.0, -1.0, 6.0, MotionGuard::ZeroMode::follows};
   EXPECT_THAT(rising(-1.0, rise, [](int period) { return -0.05 * period; }), IsNothing()) << "5 N/s: 50 N/m at 10 cm/s";
-  EXPECT_THAT(rising(-1.0, rise, [](int period) { return -0.5 * period; }), IsFault("the tool is caught", Then::hold));
+  EXPECT_THAT(rising(-1.0, rise, [](int period) { return -0.5 * period; }),
+              IsFault("the tool is caught", AllowedAction::hold));
   EXPECT_THAT(rising(
                   -1.0, rise, [](int period) { return -0.06 * period; }, 0.0002),
-              IsFault("the tool is caught", Then::hold))
+              IsFault("the tool is caught", AllowedAction::hold))
       << "300 N/m at 2 cm/s";
 }
 
 TEST(AReflex, OfAnArmThatGoesUpAndIsPulledIsToldAsThatAndHeld) {
   const auto reflex = [](double press, bool goes_up) {
     Rules rules;
-    if (goes_up) rules.expect_rise(MotionGuard::Rise{kZero.z(), -1.0, 14.0});
+    if (goes_up) rules.expect_rise(MotionGuard::RiseLimits{kZero.z(), -1.0, 14.0});
     return rules.at(1.0, [&](Snapshot& seen) {
       seen.endpoint->force.z() = kZero.z() - press;
       seen.collision->collision = true;
     });
   };
-  EXPECT_THAT(reflex(-12.0, true), IsFault("the tool is caught: it is pulled with 12 N", Then::hold));
+  EXPECT_THAT(reflex(-12.0, true), IsFault("the tool is caught: it is pulled with 12 N", AllowedAction::hold));
   EXPECT_TRUE(reflex(-12.0, true)->reflex);
-  EXPECT_THAT(reflex(17.0, true), IsFault("the arm's own reflex", Then::retreat)) << "left pressing";
-  EXPECT_THAT(reflex(-12.0, false), IsFault("the arm's own reflex", Then::retreat));
+  EXPECT_THAT(reflex(17.0, true), IsFault("the arm's own reflex", AllowedAction::retreat)) << "left pressing";
+  EXPECT_THAT(reflex(-12.0, false), IsFault("the arm's own reflex", AllowedAction::retreat));
 }
 
 }  // namespace

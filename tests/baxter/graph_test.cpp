@@ -25,7 +25,7 @@ bool is_refused(const std::string& xml) {
   try {
     read_graph(xml);
   } catch (const NetworkError& trouble) {
-    EXPECT_EQ(trouble.why, NetworkError::Why::nonsense);
+    EXPECT_EQ(trouble.why, NetworkError::FailureCause::nonsense);
     return true;
   }
   return false;

@@ -45,7 +45,7 @@ Joints posture(Random& random) {
 TEST(TheArmWithMasses, EndsWhereTheDriversKinematicsHaveIt) {
   const Eigen::Vector3d tip(0.01, -0.02, 0.15);
   const fake_baxter::Dynamics dynamics(tip);
-  const baxter::Arm arm(tip);
+  const baxter::ArmKinematics arm(tip);
   Random random(1, "test");
   for (int i = 0; i < 100; ++i) {
     const Joints joints = posture(random);

@@ -21,7 +21,7 @@ using test::Rules;
 using test::sound;
 using test::Spoil;
 using testing::HasSubstr;
-using Then = Fault::Then;
+using AllowedAction = Fault::AllowedAction;
 using Button = StateReading::Button;
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
@@ -31,7 +31,7 @@ struct Wrong {
   const char* name;
   Spoil spoil;
   const char* reason;
-  Then then = Then::silence;
+  AllowedAction then = AllowedAction::silence;
 };
 
 void PrintTo(const Wrong& wrong, std::ostream* out) { *out << wrong.reason; }
@@ -80,38 +80,39 @@ INSTANTIATE_TEST_SUITE_P(
               },
               "/clock comes from more than one node"},
         Wrong{"TwoSendersOfEndpoint", [](Snapshot& s) { s.senders.endpoint.push_back("/mock"); },
-              "endpoint_state of the left arm comes from more than one node, /realtime_loop and /mock", Then::hold},
+              "endpoint_state of the left arm comes from more than one node, /realtime_loop and /mock",
+              AllowedAction::hold},
         Wrong{"TwoSendersOfCollisions", [](Snapshot& s) { s.senders.collision.push_back("/mock"); },
-              "collision_detection_state of the left arm comes from more than one node", Then::hold},
+              "collision_detection_state of the left arm comes from more than one node", AllowedAction::hold},
         Wrong{"TwoSendersOfAvoidance",
               [](Snapshot& s) {
                 s.senders.avoidance = {"/a", "/b"};
               },
-              "collision_avoidance_state of the left arm comes from more than one node", Then::hold},
+              "collision_avoidance_state of the left arm comes from more than one node", AllowedAction::hold},
         Wrong{"LowSpeedRatio",
               [](Snapshot& s) {
-                s.speed_ratio = Setting{0.05, "/other"};
+                s.speed_ratio = ReceivedSetting{0.05, "/other"};
               },
               "set_speed_ratio: /other has set it to 0.05, too low for the arm to follow: set it to 0.3, on "
               "/robot/limb/left/set_speed_ratio",
-              Then::hold},
+              AllowedAction::hold},
         Wrong{"ShortTimeout",
               [](Snapshot& s) {
-                s.command_timeout = Setting{0.02, "/other"};
+                s.command_timeout = ReceivedSetting{0.02, "/other"};
               },
-              "set it to 0.2, on /robot/limb/left/joint_command_timeout", Then::hold},
+              "set it to 0.2, on /robot/limb/left/joint_command_timeout", AllowedAction::hold},
         Wrong{"Malformed", [](Snapshot& s) { s.malformed = "joint_states has 17 names and 3 positions"; },
               "17 names and 3 positions"},
         Wrong{"OldJoints", [](Snapshot& s) { s.joints->received -= 0.11; },
               "joint_states of the left arm did not arrive"},
         Wrong{"OldEndpoint", [](Snapshot& s) { s.endpoint->received -= 0.11; },
-              "endpoint_state of the left arm did not", Then::hold},
+              "endpoint_state of the left arm did not", AllowedAction::hold},
         Wrong{"JointIsNoNumber", [](Snapshot& s) { s.joints->position(3) = kNaN; }, "a position that is not a number"},
         Wrong{"ForceIsNoNumber", [](Snapshot& s) { s.endpoint->force.z() = kNaN; },
-              "a force or a position that is not a number", Then::hold},
-        Wrong{"NoForce", [](Snapshot& s) { s.endpoint->force.setZero(); }, "exactly zero", Then::hold},
+              "a force or a position that is not a number", AllowedAction::hold},
+        Wrong{"NoForce", [](Snapshot& s) { s.endpoint->force.setZero(); }, "exactly zero", AllowedAction::hold},
         Wrong{"StampsLag", [](Snapshot& s) { s.endpoint->stamp -= 0.31; },
-              "endpoint_state arrives with time stamps 0.31 s older", Then::hold},
+              "endpoint_state arrives with time stamps 0.31 s older", AllowedAction::hold},
         Wrong{"JointStampsLag", [](Snapshot& s) { s.joints->stamp -= 0.31; },
               "joint_states arrives with time stamps 0.31 s older"},
         Wrong{"Jump", [](Snapshot& s) { s.joints->position(2) += 0.07; }, "/robot/joint_states jumped by 4.0 deg"},
@@ -124,13 +125,14 @@ INSTANTIATE_TEST_SUITE_P(
               },
               "a program, perhaps a safety node, stopped the robot (/robot/set_super_stop)"},
         Wrong{"Reflex", [](Snapshot& s) { s.collision->collision = true; }, "the arm's own reflex stopped it",
-              Then::retreat}),
+              AllowedAction::retreat}),
     [](const auto& wrong) { return std::string(wrong.param.name); });
 
 TEST(AJoint, BeyondItsLimitIsNamed) {
   Joints joints = pose();
   joints(3) = 2.62;
-  EXPECT_THAT(Rules().at(1.0, nullptr, joints), IsFault("left_e1 is at 150.1 deg, beyond its limit", Then::hold));
+  EXPECT_THAT(Rules().at(1.0, nullptr, joints),
+              IsFault("left_e1 is at 150.1 deg, beyond its limit", AllowedAction::hold));
 }
 
 TEST(JointsThatAreNotKnown, AreNotHeldWhateverElseIsWrong) {
@@ -152,16 +154,16 @@ TEST(JointsThatAreNotKnown, AreNotHeldWhateverElseIsWrong) {
         spoil_joints(s);
         spoil_more(s);
       });
-      EXPECT_THAT(fault, IsFault("", Then::silence));
+      EXPECT_THAT(fault, IsFault("", AllowedAction::silence));
     }
   }
 }
 
 TEST(AnArmBesideTheArea, IsNotRaisedEvenIfItsReflexStoppedIt) {
   Snapshot seen = sound(1.0, pose());
-  EXPECT_THAT(Rules().check(seen, {0.1, 0.1, -0.05}), IsFault("below the floor", Then::hold));
+  EXPECT_THAT(Rules().check(seen, {0.1, 0.1, -0.05}), IsFault("below the floor", AllowedAction::hold));
   seen.collision->collision = true;
-  EXPECT_THAT(Rules().check(seen, {0.1, 0.1, -0.05}), IsFault("below the floor", Then::hold));
+  EXPECT_THAT(Rules().check(seen, {0.1, 0.1, -0.05}), IsFault("below the floor", AllowedAction::hold));
 }
 
 TEST(ASoundRobot, BreaksNoRule) {
@@ -197,7 +199,7 @@ bool noticed_silence_of_collisions(double period) {
     if (now < 5.0 && now - last >= period) last = now;
     const std::optional<Fault> fault = rules.at(now, [&](Snapshot& s) { s.collision->received = last; });
     if (!fault) continue;
-    EXPECT_THAT(fault, IsFault("collision_detection_state of the left arm did not arrive", Then::hold));
+    EXPECT_THAT(fault, IsFault("collision_detection_state of the left arm did not arrive", AllowedAction::hold));
     return true;
   }
   return false;
@@ -226,12 +228,12 @@ TEST(AForce, StopsAfterThreeReadingsBeyondTheLimitAndSidewaysHalfAsMuchAgain) {
       EXPECT_THAT(fault, IsNothing()) << "one or two samples may be noise";
       fault = rules.at(1.0 + 0.01 * i, [&](Snapshot& s) { s.endpoint->force = kZero + (1.0 + 0.001 * i) * push; });
     }
-    EXPECT_THAT(fault, IsFault("more than force_stop allows", Then::retreat));
+    EXPECT_THAT(fault, IsFault("more than force_stop allows", AllowedAction::retreat));
   }
 }
 
 /// Returns whether a force, added to the zero as a function of the period, stops an arm within `periods` periods.
-bool stopped(MotionGuard::Zero zero, int periods, const std::function<Eigen::Vector3d(int)>& force) {
+bool stopped(MotionGuard::ZeroMode zero, int periods, const std::function<Eigen::Vector3d(int)>& force) {
   Rules rules;
   rules.set_tare(kZero, zero);
   for (int i = 1; i <= periods; ++i) {
@@ -242,14 +244,14 @@ bool stopped(MotionGuard::Zero zero, int periods, const std::function<Eigen::Vec
 
 TEST(AForce, SidewaysOfAnArmWhoseJointsRubStopsNoTapButStopsTravel) {
   const auto rubs = [](int) { return Eigen::Vector3d(17, 9, 0); };
-  EXPECT_FALSE(stopped(MotionGuard::Zero::stays, 5, rubs));
-  EXPECT_TRUE(stopped(MotionGuard::Zero::follows, 5, rubs));
+  EXPECT_FALSE(stopped(MotionGuard::ZeroMode::stays, 5, rubs));
+  EXPECT_TRUE(stopped(MotionGuard::ZeroMode::follows, 5, rubs));
 }
 
 TEST(AForce, WhoseZeroFollowsStopsWhenItRisesFastAndNotWhenItDrifts) {
   for (const double rise : {10.0, 50.0}) {  // N/s
     const auto rises = [rise](int period) { return Eigen::Vector3d(0.01 * rise * period, 0, 0); };
-    EXPECT_EQ(stopped(MotionGuard::Zero::follows, 300, rises), rise > 20.0);
+    EXPECT_EQ(stopped(MotionGuard::ZeroMode::follows, 300, rises), rise > 20.0);
   }
 }
 
@@ -283,7 +285,7 @@ double noticed(double speed, const std::function<double(double now)>& follows, c
     rules.record_command(now, ramp(now));
     const std::optional<Fault> fault = rules.at(now, nullptr, ramp(follows(now)));
     if (!fault) continue;
-    EXPECT_THAT(fault, IsFault("the arm does not follow", Then::hold));
+    EXPECT_THAT(fault, IsFault("the arm does not follow", AllowedAction::hold));
     EXPECT_THAT(fault->reason, HasSubstr(words));
     return now;
   }

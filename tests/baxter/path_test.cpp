@@ -48,7 +48,7 @@ constexpr Reference kReferences[] = {
 };
 
 TEST(BaxterKinematics, AgreesWithFiveReferencePoses) {
-  const Arm arm({0, 0, 0.025});
+  const ArmKinematics arm({0, 0, 0.025});
   for (const Reference& one : kReferences) {
     const Pose pose = arm.tip(Joints(one.joints));
     EXPECT_LT((pose.position - Eigen::Vector3d(one.position)).norm(), 1e-6) << one.name;
@@ -64,7 +64,7 @@ TEST(Places, OfTheSceneGoToTheRobotsFrameAndBack) {
   place.corner[1] = 0.1;
   place.height = -0.2;
   place.rotation = 0.5 * 3.14159265358979323846;
-  const Arm arm(Eigen::Vector3d::Zero());
+  const ArmKinematics arm(Eigen::Vector3d::Zero());
   const Planner planner(place, arm, nullptr);
   const Pose pose = planner.pose({0.03, 0.07}, 0.05);
   // A quarter turn maps x to y and y to -x.

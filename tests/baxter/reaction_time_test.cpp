@@ -17,9 +17,10 @@ constexpr double kPeriod = 0.01;
 
 /// Returns a motion of an axis along a ramp of `way` metres at `speed`, from rest to rest, with a lag and a delay in
 /// each direction. At rest its error is `begin`, then `end`.
-std::vector<ReactionTime::Step> motion(double lag, double delay, double way, double speed, double begin, double end) {
-  backends::Arm axis(JointLag{lag, 0.0}, kPeriod, 0.0);
-  std::vector<ReactionTime::Step> out;
+std::vector<ReactionTime::MotionSample> motion(double lag, double delay, double way, double speed, double begin,
+                                               double end) {
+  backends::SimulatedAxis axis(JointLag{lag, 0.0}, kPeriod, 0.0);
+  std::vector<ReactionTime::MotionSample> out;
   const auto commanded = [&](double time) { return std::clamp(speed * time, 0.0, way); };
   for (double time = 0.0; time < way / speed + 3.0; time += kPeriod) {
     axis.follow(commanded(time - 2.0 * delay));
@@ -80,7 +81,7 @@ TEST(ReactionTime, MeasuresByPositionsHowLateAContactIsNoticed) {
 TEST(ReactionTime, IsNoShorterThanTheTruthWhateverNoiseMakesOfSoftAndHardContacts) {
   constexpr double kLate = 0.15;
   Random random(1, "speeds");
-  backends::Normal normal(Random(1, "noise"));
+  backends::GaussianNumbers normal(Random(1, "noise"));
   for (const double noise : {0.5, 0.7, 0.9}) {  // N at the detection
     for (const double object : {500.0, 1500.0, kRigid}) {
       int shorter = 0;

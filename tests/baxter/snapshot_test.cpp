@@ -21,8 +21,8 @@ namespace palpate::test {
 namespace {
 
 using baxter::connect;
+using baxter::ReceivedSetting;
 using baxter::Robot;
-using baxter::Setting;
 using baxter::Snapshot;
 
 /// Reads until `holds` is true for a snapshot, for at most five minutes.
@@ -37,7 +37,7 @@ Snapshot read_until(Robot& robot, const Condition& holds) {
   return out;
 }
 
-std::string words(const std::optional<Setting>& setting) {
+std::string words(const std::optional<ReceivedSetting>& setting) {
   return setting ? fmt::format("{} by {}", setting->value, setting->sender) : "not heard";
 }
 

@@ -17,7 +17,7 @@ using test::kZero;
 using test::pose;
 using test::Rules;
 using test::sound;
-using Then = Fault::Then;
+using AllowedAction = Fault::AllowedAction;
 
 TEST(AForce, ThatIsLookedAtAgainIsStillOneReading) {
   Rules rules;
@@ -36,7 +36,7 @@ std::optional<Fault> looked(double period, double joints, double endpoint, bool 
   Rules rules;
   for (int i = 0; i * period < 3.0; ++i) {
     const double now = 1.0 + i * period;
-    const auto latest = [now](Arrival& arrival, double rate) {
+    const auto latest = [now](MessageArrival& arrival, double rate) {
       arrival.received = std::floor(now * rate + 1e-6) / rate;
       arrival.stamp = arrival.received + 5.0;
       arrival.count = std::lround(arrival.received * rate);
@@ -56,15 +56,16 @@ TEST(AStream, BelowFiftyHertzStopsTheArm) {
   for (const double rate : {100.0, 70.0, 50.0}) EXPECT_FALSE(looked(0.01, rate, rate)) << rate;
   for (const double rate : {45.0, 25.0, 20.0}) {
     const std::optional<Fault> force = looked(0.01, 100.0, rate);
-    EXPECT_THAT(force, IsFault("endpoint_state of the left arm arrived only ", Then::hold)) << rate;
-    EXPECT_THAT(force, IsFault(" times in the last 0.5 s, 25 are needed", Then::hold)) << rate;
-    EXPECT_THAT(looked(0.01, rate, 100.0), IsFault("/robot/joint_states of the left arm arrived only ", Then::hold));
+    EXPECT_THAT(force, IsFault("endpoint_state of the left arm arrived only ", AllowedAction::hold)) << rate;
+    EXPECT_THAT(force, IsFault(" times in the last 0.5 s, 25 are needed", AllowedAction::hold)) << rate;
+    EXPECT_THAT(looked(0.01, rate, 100.0),
+                IsFault("/robot/joint_states of the left arm arrived only ", AllowedAction::hold));
   }
 }
 
 TEST(ADriver, ThatGetsToTheArmTooSeldomBlamesItsComputer) {
   EXPECT_THAT(looked(0.03, 100.0, 100.0),
-              IsFault("this computer served the arm 17 times in the last 0.5 s, 25 are needed", Then::hold));
+              IsFault("this computer served the arm 17 times in the last 0.5 s, 25 are needed", AllowedAction::hold));
   EXPECT_THAT(looked(0.03, 100.0, 100.0, true), IsNothing()) << "a simulated clock does not wait";
   EXPECT_TRUE(looked(0.03, 100.0, 12.0, true)) << "a stream that is slower than the driver is not its fault";
 }
@@ -74,15 +75,16 @@ TEST(AGap, OfTheDriversOwnIsNotBlamedOnTheNetwork) {
   ASSERT_THAT(rules.at(1.0), IsNothing());
   Snapshot seen = sound(1.0, pose());
   seen.now = 1.15;  // without reads and reception
-  EXPECT_THAT(rules.check(seen, kInside), IsFault("this computer could not serve the arm for 0.15 s", Then::silence));
+  EXPECT_THAT(rules.check(seen, kInside),
+              IsFault("this computer could not serve the arm for 0.15 s", AllowedAction::silence));
 
   Rules receiving;
   for (seen.now = 1.0; seen.now < 1.1; seen.now += 0.01) ASSERT_THAT(receiving.check(seen, kInside), IsNothing());
   seen.now = 1.12;
-  EXPECT_THAT(receiving.check(seen, kInside), IsFault("check the network", Then::silence));
+  EXPECT_THAT(receiving.check(seen, kInside), IsFault("check the network", AllowedAction::silence));
   seen.own_gap = 0.12;
   EXPECT_THAT(receiving.check(seen, kInside),
-              IsFault("this computer could not serve the arm for 0.12 s", Then::silence));
+              IsFault("this computer could not serve the arm for 0.12 s", AllowedAction::silence));
 }
 
 TEST(Heartbeat, IsWithoutGapsWhileItBeats) {

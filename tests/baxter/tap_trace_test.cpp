@@ -84,7 +84,7 @@ RecordedTap second_tap(const Case& one, const BaxterOptions& options, bool conta
   test::BodyRobot robot(*scene, body);
   for (const fake_baxter::Fault& fault : one.faults) robot.body.inject(fault);
   Tapper tapper(options, *scene, robot, nullptr, [](const std::string&) {});
-  const Arm arm(Eigen::Map<const Eigen::Vector3d>(options.tool.tip));
+  const ArmKinematics arm(Eigen::Map<const Eigen::Vector3d>(options.tool.tip));
   const Eigen::Isometry3d to_scene = options.scene_pose.frame().inverse();
   RecordedTap out;
   robot.every_period = [&] {
@@ -174,7 +174,7 @@ Watched watch_tap(const fake_baxter::Fault& fault, const fake_baxter::Trigger& t
   test::BodyRobot robot(*scene, body);
   robot.body.inject(fault, trigger);
   Tapper tapper(options, *scene, robot, nullptr, [](const std::string&) {});
-  const Arm arm(Eigen::Map<const Eigen::Vector3d>(options.tool.tip));
+  const ArmKinematics arm(Eigen::Map<const Eigen::Vector3d>(options.tool.tip));
   const Eigen::Isometry3d to_scene = options.scene_pose.frame().inverse();
   Watched out;
   robot.every_period = [&] {
@@ -313,7 +313,7 @@ TEST(TapTraces, OfTheRobotOfTheTestsAreDecidedAsTheTruthSays) {
     SCOPED_TRACE(one.what);
     expect_stored(trace, one.name);
     const auto motion = palpate::test::filled<tapping::MotionOptions>(trace.motion);
-    tapping::GuardedTap tap(motion, tapping::plan_descent(motion, 0.0, {}), tapping::GuardedTap::Arm::real);
+    tapping::GuardedTap tap(motion, tapping::plan_descent(motion, 0.0, {}), tapping::GuardedTap::ArmKind::real);
     double stopped = -1.0;
     for (const TapTrace::Row& row : trace.rows) {
       if (tap.done()) break;

@@ -41,7 +41,7 @@ TEST(TheRobotsInverseKinematics, IsAskedForEveryPose) {
 }
 
 TEST(TheRobotsInverseKinematics, IsNotBelieved) {
-  const Arm gripper({0, 0, 0.025});
+  const ArmKinematics gripper({0, 0, 0.025});
   const std::function<Answer(const Pose&, const Joints&)> answers[] = {
       [](const Pose&, const Joints&) { return Answer(); },
       [](const Pose&, const Joints&) { return Answer(Joints::Constant(std::nan(""))); },
@@ -87,8 +87,12 @@ void expect_check(Bench& bench, const std::string& reason) {
 }
 
 TEST(BeforeFlight, WhatTheRobotSaysIsRefusedWhereTheArmWouldNotDoWhatItIsTold) {
-  const auto ratio = [](double value) { return [=](Snapshot& s) { s.speed_ratio = Setting{value, "/other"}; }; };
-  const auto timeout = [](double value) { return [=](Snapshot& s) { s.command_timeout = Setting{value, "/other"}; }; };
+  const auto ratio = [](double value) {
+    return [=](Snapshot& s) { s.speed_ratio = ReceivedSetting{value, "/other"}; };
+  };
+  const auto timeout = [](double value) {
+    return [=](Snapshot& s) { s.command_timeout = ReceivedSetting{value, "/other"}; };
+  };
   const auto avoids = [](bool arm, const std::vector<std::string>& objects) {
     return [=](Snapshot& s) { s.avoidance = AvoidanceReading{{}, arm, objects}; };
   };
@@ -117,7 +121,7 @@ TEST(BeforeFlight, WhatTheRobotSaysIsRefusedWhereTheArmWouldNotDoWhatItIsTold) {
 TEST(BeforeFlight, WhatOthersLeftOnTheRobotIsTold) {
   Bench bench;
   bench.robot.spoil = [](Snapshot& s) {
-    s.speed_ratio = Setting{0.5, "/other"};
+    s.speed_ratio = ReceivedSetting{0.5, "/other"};
     s.end_effector = {"rethink electric gripper", 0.8};
   };
   bench.check();

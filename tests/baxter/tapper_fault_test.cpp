@@ -166,7 +166,7 @@ TEST(AFault, ThatNobodyThoughtOfIsRecordedAndNothingMoreIsSent) {
 TEST(ATap, InterruptedWhileItIsPlannedAsksForNoOtherPoseAndSendsNothing) {
   Bench bench(test::asking());
   bench.check();
-  const Arm gripper({0, 0, 0.025});
+  const ArmKinematics gripper({0, 0, 0.025});
   bench.robot.answer = [&](const Pose& pose, const Joints& seed) {
     bench.interrupted = true;
     return gripper.solve(pose, seed);

@@ -309,7 +309,7 @@ TEST(ATap, DoesNotMakeUpForPeriodsThatItsComputerMissed) {
 TEST(ATap, IsNotBegunWhereTheWayToItCannotBePlanned) {
   Bench bench(test::asking(), starts({0.02, 0.02, 0.05}));
   const test::PlannerBench plans;
-  const Arm gripper({0, 0, 0.025});
+  const ArmKinematics gripper({0, 0, 0.025});
   bench.robot.answer = [&](const Pose& pose, const Joints& seed) {
     const Eigen::Vector3d at = plans.planner.to_scene(pose.position);
     const bool on_the_way = (at - Eigen::Vector3d(0.07, 0.07, at.z())).norm() < 0.02;

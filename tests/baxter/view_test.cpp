@@ -25,7 +25,7 @@
 namespace palpate::test {
 namespace {
 
-using baxter::View;
+using baxter::SpectatorDisplay;
 using sensor_msgs::PointCloud2;
 using ::testing::StartsWith;
 using visualization_msgs::Marker;
@@ -33,7 +33,7 @@ using visualization_msgs::MarkerArray;
 
 /// A view with the scene's corner at (0.5, 0.1, -0.2) in the robot's base, rotated by 90 degrees: x of the scene is y
 /// of the base.
-std::unique_ptr<View> turned_view(baxter::Robot& robot) {
+std::unique_ptr<SpectatorDisplay> turned_view(baxter::Robot& robot) {
   baxter::ScenePoseOptions place;
   place.corner[0] = 0.5;
   place.corner[1] = 0.1;
@@ -83,11 +83,11 @@ std::string describe(const PointCloud2& cloud) {
 
 /// Returns the message that a late subscriber receives after `show`.
 template <class Message>
-std::string seen(const RobotLab& lab, const std::string& topic, const std::function<void(View&)>& show) {
+std::string seen(const RobotLab& lab, const std::string& topic, const std::function<void(SpectatorDisplay&)>& show) {
   return run_in_child(lab.environment(),
                       [&] {
                         const auto robot = baxter::connect({false, false});
-                        const std::unique_ptr<View> view = turned_view(*robot);
+                        const std::unique_ptr<SpectatorDisplay> view = turned_view(*robot);
                         show(*view);
                         return seen_late<Message>(topic, [](const Message& message) { return describe(message); });
                       })
@@ -101,7 +101,7 @@ TEST(Shown, AreTheAreaTheTapsOnAndOffTheObjectAndTheNextAboveTheDeskInTheRobotsF
   const std::string area =
       "area 0 in base at 0: (0.500 0.100 -0.190) (0.500 0.400 -0.190) (0.300 0.400 -0.190) (0.300 0.100 -0.190) "
       "(0.500 0.100 -0.190)\n";
-  EXPECT_EQ(seen<MarkerArray>(lab, "palpate/taps", [](View&) {}),
+  EXPECT_EQ(seen<MarkerArray>(lab, "palpate/taps", [](SpectatorDisplay&) {}),
             area + "on object 0 in base at 0, gone:\noff object 0 in base at 0, gone:\nnext 0 in base at 0, gone:\n");
   const auto contact = [&](const Target& place, double height, bool on_object) {
     TapReading out;
@@ -109,7 +109,7 @@ TEST(Shown, AreTheAreaTheTapsOnAndOffTheObjectAndTheNextAboveTheDeskInTheRobotsF
     out.on_object = on_object;
     return out;
   };
-  const auto show = [&](View& view) {
+  const auto show = [&](SpectatorDisplay& view) {
     view.target({0.1, 0.0});
     view.contacts({contact({0.1, 0.0}, 0.07, false)});
     view.target({0.2, 0.0});
@@ -126,7 +126,7 @@ TEST(Shown, AreTheAreaTheTapsOnAndOffTheObjectAndTheNextAboveTheDeskInTheRobotsF
 TEST(Shown, TheSurfaceHasItsStandardDeviationForIntensity) {
   const RobotLab lab(in_real_time());
   const auto show = [](double second) {
-    return [second](View& view) {
+    return [second](SpectatorDisplay& view) {
       Points places(2, 2);
       places << 0.0, 0.0, 0.1, 0.2;
       view.surface(places, Eigen::Vector2d(0.05, second), Eigen::Vector2d(0.002, 0.01));

@@ -365,8 +365,8 @@ class Run {
   const Settings& settings_;
   ResolvedConfig config_;
   std::unique_ptr<const Scene> scene_;
-  Region region_;
-  Bundle bundle_;
+  SearchBall region_;
+  LineBundle bundle_;
   Random random_;
   Implicit implicit_;
   std::vector<Vector3d> directions_;

@@ -57,7 +57,7 @@ Body::Body(const Scene& scene, const BodyOptions& options)
       network_(Random(options.seed, "fake_baxter/commands")) {
   const Effects& effects = scene.effects();
   if (effects.force_noise) noise_ = std::max(kLeastNoise, effects.force_noise->deviation);
-  backends::Normal bias(Random(options.seed, "fake_baxter/bias"));
+  backends::GaussianNumbers bias(Random(options.seed, "fake_baxter/bias"));
   for (double& one : bias_.reshaped()) one = kBias * bias();
   for (double& one : bias_by_joints_.reshaped()) one = kBiasByJoints * bias();
 

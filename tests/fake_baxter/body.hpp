@@ -137,8 +137,8 @@ class Body {
 
   const Scene& scene_;
   SceneFrame scene_frame_;
-  baxter::Arm tool_;     ///< its tip is that of the tool
-  baxter::Arm gripper_;  ///< its tip is left_gripper
+  baxter::ArmKinematics tool_;     ///< its tip is that of the tool
+  baxter::ArmKinematics gripper_;  ///< its tip is left_gripper
   std::uint64_t seed_;
   double begin_;
   std::unique_ptr<Mechanics> mechanics_;
@@ -146,7 +146,7 @@ class Body {
   ArmState arm_;                  ///< state of the mechanics, including the effect of a caught tool
   std::optional<double> anchor_;  ///< m, height in the scene at which a caught tool is fixed
   double noise_;                  ///< N
-  backends::Normal normal_;
+  backends::GaussianNumbers normal_;
   Random spikes_;
   Eigen::Vector3d bias_;                        ///< N, in the untucked posture
   Eigen::Matrix<double, 3, 7> bias_by_joints_;  ///< N/rad

@@ -22,7 +22,7 @@ baxter::Joints overlaid(baxter::Joints joints, const std::vector<std::string>& n
   return joints;
 }
 
-IkService::IkService(const baxter::Arm& arm) : arm_(arm) {
+IkService::IkService(const baxter::ArmKinematics& arm) : arm_(arm) {
   node_.setCallbackQueue(&queue_);
   server_ = node_.advertiseService("/ExternalTools/left/PositionKinematicsNode/IKService", &IkService::answer, this);
   spinner_.start();

@@ -30,7 +30,7 @@ class IkService {
 
   /// Advertises the service for poses of the tip of `arm` (left_gripper) in the frame `base`. `arm` must outlive the
   /// object, and no other code may call its solve(). Needs a running node.
-  explicit IkService(const baxter::Arm& arm);
+  explicit IkService(const baxter::ArmKinematics& arm);
   ~IkService();
 
   void set(const Now& now);
@@ -39,7 +39,7 @@ class IkService {
   using Call = baxter_core_msgs::SolvePositionIK;
   bool answer(Call::Request& request, Call::Response& response);
 
-  const baxter::Arm& arm_;
+  const baxter::ArmKinematics& arm_;
   std::mutex mutex_;
   Now now_;  ///< guarded by mutex_
   std::atomic<bool> stopping_{false};

@@ -32,7 +32,7 @@ void LaggedArm::brake() {
 void LaggedArm::advance(const Joints& reference) {
   const Joints before = state_.position;
   for (int i = 0; i < 7; ++i) {
-    backends::Arm& joint = joints_[static_cast<std::size_t>(i)];
+    backends::SimulatedAxis& joint = joints_[static_cast<std::size_t>(i)];
     joint.follow(reference(i));
     unloaded_(i) = joint.position();
   }

@@ -30,7 +30,7 @@ class LaggedArm final : public Mechanics {
   JointLag lag_;
   double object_give_;  ///< m/N
   double arm_give_;     ///< m/N
-  std::vector<backends::Arm> joints_;
+  std::vector<backends::SimulatedAxis> joints_;
   Joints unloaded_;  ///< joints without deflection
 };
 

@@ -111,7 +111,7 @@ int run(const Arguments& a) {
   for (const Fault& fault : faults) {
     if (fault.kind == FaultKind::bursts || fault.kind == FaultKind::stall) node.queue = kBurst;
   }
-  const baxter::Arm arm({0.0, 0.0, baxter.tool.gripper});
+  const baxter::ArmKinematics arm({0.0, 0.0, baxter.tool.gripper});
   serve(body, node, gripper, fault_nodes, arm, stop);
   return 0;
 }

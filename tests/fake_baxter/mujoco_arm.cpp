@@ -30,7 +30,7 @@ constexpr double kPlate = 0.02;
 constexpr double kClear = 0.002;   // m of the tip above the scene, more than it bounces
 constexpr double kRadius = 0.004;  // m, of the tip
 
-std::string frame(const Step& step) {
+std::string frame(const JointTransform& step) {
   return fmt::format("pos='{} {} {}' euler='{} {} {}'", step.x, step.y, step.z, step.roll, step.pitch, step.yaw);
 }
 

@@ -178,7 +178,7 @@ class Trace {
 class Node {
  public:
   Node(Body& body, const NodeOptions& options, ExtraNode& gripper, std::list<FaultNode>& fault_nodes,
-       const baxter::Arm& arm)
+       const baxter::ArmKinematics& arm)
       : body_(body), options_(options), gripper_(gripper), fault_nodes_(fault_nodes), trace_(options.trace) {
     join_network(options.rate > 0.0);
     node_.emplace();
@@ -348,7 +348,7 @@ class Node {
 }  // namespace
 
 void serve(Body& body, const NodeOptions& options, ExtraNode& gripper, std::list<FaultNode>& fault_nodes,
-           const baxter::Arm& arm, const std::atomic<bool>& stop) {
+           const baxter::ArmKinematics& arm, const std::atomic<bool>& stop) {
   Node(body, options, gripper, fault_nodes, arm).run(stop);
 }
 

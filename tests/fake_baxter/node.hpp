@@ -37,6 +37,6 @@ struct FaultNode {
 /// unless none arrives for `patience`. So a driver on a busy machine is not late, and the end of a driver is still
 /// noticed.
 void serve(Body& body, const NodeOptions& options, ExtraNode& gripper, std::list<FaultNode>& fault_nodes,
-           const baxter::Arm& arm, const std::atomic<bool>& stop);
+           const baxter::ArmKinematics& arm, const std::atomic<bool>& stop);
 
 }  // namespace palpate::fake_baxter

@@ -25,7 +25,7 @@ void Motors::put(const Joints& joints) {
 
 void Motors::follow(const Joints& reference) {
   for (int i = 0; i < 7; ++i) {
-    backends::Arm& one = each_[static_cast<std::size_t>(i)];
+    backends::SimulatedAxis& one = each_[static_cast<std::size_t>(i)];
     one.follow(reference(i));
     velocity_(i) = (one.position() - position_(i)) / step_;
     position_(i) = one.position();

@@ -40,7 +40,7 @@ class Motors {
  private:
   JointLag lag_;
   double step_;
-  std::vector<backends::Arm> each_;
+  std::vector<backends::SimulatedAxis> each_;
   Joints position_ = Joints::Zero();
   Joints velocity_ = Joints::Zero();
 };

@@ -53,10 +53,10 @@ void words(const std::string& bytes) {
     sweep.written();
   });
   attempt([&] {
-    const Condition condition(Tree::scalar(bytes, true));
+    const WhereCondition condition(Tree::scalar(bytes, true));
     condition.holds(
         [](const std::string& name) {
-          return std::optional(Condition::Value{name, name.size() % 2 == 0});
+          return std::optional(WhereCondition::Value{name, name.size() % 2 == 0});
         },
         {"taps", "seed"});
   });
@@ -75,7 +75,7 @@ void answer(const std::string& bytes) {
   constexpr double kHighest = 0.135;
   const TapRequest request = test::request_at({0.1, 0.1}, 2);
   const process::Answer answer =
-      process::read_answer(bytes, request, {kLowest, kHighest, ""}, process::Protocol::any_line);
+      process::read_answer(bytes, request, {kLowest, kHighest, ""}, process::ProtocolVersion::any_line);
   if (!answer.accepted) return;
   if (!answer.in_step) throw std::logic_error("an answer to another tap was accepted");
   const TapResult& result = answer.result;

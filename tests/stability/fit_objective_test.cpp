@@ -107,15 +107,15 @@ class FitObjective : public testing::TestWithParam<Setting> {
   }
 
   std::shared_ptr<Kernel> kernel_;
-  Model model_{Points(kPoints, 2),
-               Eigen::MatrixXd(kPoints, GetParam().outputs),
-               Eigen::VectorXd::Zero(GetParam().outputs),
-               Eigen::VectorXd::Ones(GetParam().outputs),
-               *kernel_,
-               GetParam().mean_ratio,
-               Eigen::VectorXd::Constant(GetParam().outputs, 0.25),
-               GetParam().fit_means,
-               {}};
+  FitModel model_{Points(kPoints, 2),
+                  Eigen::MatrixXd(kPoints, GetParam().outputs),
+                  Eigen::VectorXd::Zero(GetParam().outputs),
+                  Eigen::VectorXd::Ones(GetParam().outputs),
+                  *kernel_,
+                  GetParam().mean_ratio,
+                  Eigen::VectorXd::Constant(GetParam().outputs, 0.25),
+                  GetParam().fit_means,
+                  {}};
   std::vector<double> x_;
   std::vector<HyperPrior> expectations_;
 };

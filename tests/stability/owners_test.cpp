@@ -133,15 +133,15 @@ TEST_P(Owners, CeresObjectiveIsTheDensityAndItsGradientThatOfDifferences) {
   const auto n = static_cast<Eigen::Index>(GetParam().taps);
   const auto rbf = test::make<Kernel>(test::shared_host(), "rbf", kernel());
   Random random(5, "owners objective");
-  Model model{Points(n, 2),
-              Eigen::MatrixXd(n, 1),
-              Eigen::VectorXd::Zero(1),
-              Eigen::VectorXd::Ones(1),
-              *rbf,
-              0.0,
-              Eigen::VectorXd::Zero(1),
-              false,
-              {}};
+  FitModel model{Points(n, 2),
+                 Eigen::MatrixXd(n, 1),
+                 Eigen::VectorXd::Zero(1),
+                 Eigen::VectorXd::Ones(1),
+                 *rbf,
+                 0.0,
+                 Eigen::VectorXd::Zero(1),
+                 false,
+                 {}};
   for (int i = 0; i < n; ++i) {
     model.points.row(i) << kSide * random.uniform(), kSide * random.uniform();
     if (again(i)) model.points.row(i) << model.points(i - 1, 0) + gap(), model.points(i - 1, 1);
@@ -201,7 +201,7 @@ LongVector means_of(const ResidualGp& residual_gp) {
   Wide noisy = k;
   LongVector targets(k.rows());
   for (Eigen::Index i = 0; i < k.rows(); ++i) {
-    const ResidualGp::Row& row = residual_gp.rows()[static_cast<std::size_t>(i)];
+    const ResidualGp::ResidualDatum& row = residual_gp.rows()[static_cast<std::size_t>(i)];
     targets(i) = row.target;
     noisy(i, i) += static_cast<long double>(row.free ? 0.0 : residual_gp.report().jitter) * k(i, i) +
                    static_cast<long double>(row.noise) * row.noise;
@@ -212,7 +212,7 @@ LongVector means_of(const ResidualGp& residual_gp) {
 // Finite, no variance beyond that before any touch, and at its rows the surface of the same model by other means.
 TEST_P(Owners, ResidualGpAndItsExpectedReductionsAreFiniteAndWithinThePrior) {
   Random random(6, "owners skin");
-  Solids solids({0.26, 0.26}, {6, 20}, Random(9, "solids"));
+  AssemblySampler solids({0.26, 0.26}, {6, 20}, Random(9, "solids"));
   std::vector<SurfaceTouch> all;
   // With more, a cell of the long form takes minutes.
   while (static_cast<int>(all.size()) < std::min(GetParam().taps, 100)) {

@@ -27,7 +27,7 @@ const Real kStep("1e-20");
 
 class ResidualGpOracle {
  public:
-  ResidualGpOracle(std::string kernel, double length, double signal, std::vector<ResidualGp::Row> rows)
+  ResidualGpOracle(std::string kernel, double length, double signal, std::vector<ResidualGp::ResidualDatum> rows)
       : kernel_(std::move(kernel)), length_(length), signal_(signal), rows_(std::move(rows)) {
     for (std::size_t i = 0; i < rows_.size(); ++i) {
       std::vector<Real> row;
@@ -49,7 +49,7 @@ class ResidualGpOracle {
       }
     }
     weights_.clear();
-    for (const ResidualGp::Row& row : rows_) weights_.emplace_back(row.target);
+    for (const ResidualGp::ResidualDatum& row : rows_) weights_.emplace_back(row.target);
     forward(weights_);
     for (std::size_t i = weights_.size(); i-- > 0;) {
       weights_[i] /= lower_[i][i];
@@ -64,7 +64,7 @@ class ResidualGpOracle {
     Real mean, variance;
   };
   Posterior at(const ResidualGp::Place& place) const {
-    const ResidualGp::Row value{place, Vector3d::Zero(), 0.0, 0.0, false};
+    const ResidualGp::ResidualDatum value{place, Vector3d::Zero(), 0.0, 0.0, false};
     Posterior out{0, covariance(value, value)};
     std::vector<Real> with;
     for (std::size_t i = 0; i < rows_.size(); ++i) {
@@ -95,7 +95,7 @@ class ResidualGpOracle {
     return signal_ * signal_ * k * normals / 2;
   }
 
-  static Point moved(const ResidualGp::Row& row, int sign) {
+  static Point moved(const ResidualGp::ResidualDatum& row, int sign) {
     Point out;
     for (std::size_t i = 0; i < 3; ++i) {
       const auto k = static_cast<Eigen::Index>(i);
@@ -104,7 +104,7 @@ class ResidualGpOracle {
     return out;
   }
 
-  Real covariance(const ResidualGp::Row& a, const ResidualGp::Row& b) const {
+  Real covariance(const ResidualGp::ResidualDatum& a, const ResidualGp::ResidualDatum& b) const {
     const bool slope_a = !a.along.isZero(0.0);
     const bool slope_b = !b.along.isZero(0.0);
     Real sum = 0;
@@ -129,7 +129,7 @@ class ResidualGpOracle {
 
   std::string kernel_;
   Real length_, signal_;
-  std::vector<ResidualGp::Row> rows_;
+  std::vector<ResidualGp::ResidualDatum> rows_;
   std::vector<std::vector<Real>> lower_;
   std::vector<Real> weights_;
 };
@@ -182,12 +182,13 @@ TEST_P(ResidualGpExactly, HasMeanAndVarianceWithContactsFreePointsAndNormals) {
     residual_gp.fit(solids, touches);
     ResidualGpOracle oracle(GetParam(), kLength, residual_gp.signal(), residual_gp.rows());
     ASSERT_TRUE(oracle.factorise());
-    std::vector<ResidualGp::Row> certain = residual_gp.rows();
-    certain.erase(std::remove_if(certain.begin(), certain.end(), [](const ResidualGp::Row& row) { return row.free; }),
-                  certain.end());
+    std::vector<ResidualGp::ResidualDatum> certain = residual_gp.rows();
+    certain.erase(
+        std::remove_if(certain.begin(), certain.end(), [](const ResidualGp::ResidualDatum& row) { return row.free; }),
+        certain.end());
     ResidualGpOracle without(GetParam(), kLength, residual_gp.signal(), certain);
     ASSERT_TRUE(without.factorise());
-    for (const ResidualGp::Row& row : residual_gp.rows()) {
+    for (const ResidualGp::ResidualDatum& row : residual_gp.rows()) {
       slopes += row.along.isZero(0.0) ? 0 : 1;
       free += row.free ? 1 : 0;
     }
@@ -259,7 +260,9 @@ TEST_P(ResidualGpExactly, IsTheOptimumOverAllFreePoints) {
         }
         // One that is inside though it holds has a contact against it.
         if (std::any_of(residual_gp.rows().begin(), residual_gp.rows().end(),
-                        [&](const ResidualGp::Row& row) { return row.free && (row.place.at - at).norm() < 0.0015; })) {
+                        [&](const ResidualGp::ResidualDatum& row) {
+                          return row.free && (row.place.at - at).norm() < 0.0015;
+                        })) {
           stretch.clear();
           continue;
         }
@@ -271,9 +274,9 @@ TEST_P(ResidualGpExactly, IsTheOptimumOverAllFreePoints) {
       ++ways;
       deepest_left = std::max(deepest_left, most);
     }
-    for (const ResidualGp::Row& point : residual_gp.free_paths().points) {
+    for (const ResidualGp::ResidualDatum& point : residual_gp.free_paths().points) {
       const bool holds =
-          std::any_of(residual_gp.rows().begin(), residual_gp.rows().end(), [&](const ResidualGp::Row& row) {
+          std::any_of(residual_gp.rows().begin(), residual_gp.rows().end(), [&](const ResidualGp::ResidualDatum& row) {
             return row.free && row.place.at == point.place.at && row.place.normal == point.place.normal;
           });
       const auto inside = static_cast<double>(Real(oracle.at(point.place).mean - point.target));
@@ -323,8 +326,8 @@ int least_power(const Matrix& a) {
 }
 
 /// Values all over space with any normals and, where `slopes`, slopes at every other place: 25 places, some close by.
-std::vector<ResidualGp::Row> any_design(bool slopes, Random& random) {
-  std::vector<ResidualGp::Row> rows;
+std::vector<ResidualGp::ResidualDatum> any_design(bool slopes, Random& random) {
+  std::vector<ResidualGp::ResidualDatum> rows;
   for (int i = 0; i < 25; ++i) {
     const ResidualGp::Place place{0.08 * random.uniform() * random_direction(random), random_direction(random)};
     rows.push_back({place, Vector3d::Zero(), 0.0, 0.0, false});
@@ -342,7 +345,7 @@ TEST_P(ResidualGpCovariance, IsItsFormulaAndHasNoNegativeEigenvalueOverRandomVal
   residual_gp.fit({}, {});
   for (int seed = 0; seed < (test::brief() ? 2 : 5); ++seed) {
     Random random(seed, "test/skin/designs");
-    const std::vector<ResidualGp::Row> rows = any_design(kernel != "matern12", random);
+    const std::vector<ResidualGp::ResidualDatum> rows = any_design(kernel != "matern12", random);
     const ResidualGpOracle oracle(kernel, kLength, residual_gp.signal(), rows);
     const Eigen::MatrixXd found = residual_gp.covariance(rows);
     // Both with a diagonal of 1, so that values and slopes count alike.

@@ -43,7 +43,7 @@ struct MadeSweep {
   Comparison by(const std::vector<std::string>& keys, const std::string& metric = "rmse_m",
                 const std::optional<std::string>& baseline = {}, const std::string& where = "") const {
     if (where.empty()) return compare(sweep, results, {keys, metric, nullptr, baseline});
-    const Condition condition(Tree::scalar(where, true));
+    const WhereCondition condition(Tree::scalar(where, true));
     return compare(sweep, results, {keys, metric, &condition, baseline});
   }
 

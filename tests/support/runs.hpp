@@ -119,8 +119,8 @@ struct Prepared {
 
   void run() { experiment.run(journal); }
   /// The belief of a run that taps from above.
-  HeightMap& belief() { return static_cast<HeightMap&>(experiment.belief()); }
-  const HeightMap& belief() const { return static_cast<const HeightMap&>(experiment.belief()); }
+  HeightMapBelief& belief() { return static_cast<HeightMapBelief&>(experiment.belief()); }
+  const HeightMapBelief& belief() const { return static_cast<const HeightMapBelief&>(experiment.belief()); }
   const HeightModels& models() const { return belief().models(); }
   CandidateGrid grid() const { return grid_of(belief().candidates()); }
   /// Has models of these quantities read from now on, beside those of the run, and their arrays computed.

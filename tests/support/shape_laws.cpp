@@ -99,7 +99,7 @@ void check_shape_laws(const Shape& shape) {
   int agree = 0;
   for (int i = 0; i < 1000; ++i) {
     const Line line = random_line(shape, random, false);
-    const std::vector<Stretch> intervals = shape.intervals(line);
+    const std::vector<LineInterval> intervals = shape.intervals(line);
     if (!intervals.empty()) {
       EXPECT_NEAR(intervals.front().begin, shape.first_intersection(line), 1e-6 * size);
       EXPECT_NEAR(intervals.back().end, -shape.first_intersection({line.origin, -line.direction}), 1e-5 * size);
@@ -109,8 +109,9 @@ void check_shape_laws(const Shape& shape) {
       EXPECT_TRUE(k == 0 || intervals[k].begin > intervals[k - 1].end);
     }
     const auto holds = [&](const Vector3d& point, const Vector3d& direction) {
-      const std::vector<Stretch> through = shape.intervals({point, direction});
-      return std::any_of(through.begin(), through.end(), [](const Stretch& s) { return s.begin < 0.0 && s.end > 0.0; });
+      const std::vector<LineInterval> through = shape.intervals({point, direction});
+      return std::any_of(through.begin(), through.end(),
+                         [](const LineInterval& s) { return s.begin < 0.0 && s.end > 0.0; });
     };
     const double first = intervals.empty() ? 0.0 : intervals.front().begin;
     const double last = intervals.empty() ? 0.0 : intervals.back().end;

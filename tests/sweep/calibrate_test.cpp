@@ -59,7 +59,9 @@ TEST(Contacts, TellOffsetDriftNoisePlaceAndLiesWithinTheirIntervalsAsOftenAsThes
   constexpr int kSets = 60;
   constexpr int kContacts = 80;
   int offset = 0, drift = 0, noise = 0, lateral = 0, lies = 0;
-  const auto holds = [](const Estimated& one, double truth) { return one.low <= truth && truth <= one.high ? 1 : 0; };
+  const auto holds = [](const IntervalEstimate& one, double truth) {
+    return one.low <= truth && truth <= one.high ? 1 : 0;
+  };
   for (std::uint64_t seed = 1; seed <= kSets; ++seed) {
     const ContactFit fit = fit_contacts(contacts_of(*scene, arm, kContacts, seed), 0.15);
     offset += holds(fit.offset, arm.offset + arm.drift * fit.mean_elapsed);

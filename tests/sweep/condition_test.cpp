@@ -26,12 +26,12 @@ const std::map<std::string, std::string> kValues{
 bool holds(const std::string& text) {
   std::vector<std::string> known;
   for (const auto& one : kValues) known.push_back(one.first);
-  const auto value_of = [](const std::string& name) -> std::optional<Condition::Value> {
-    if (name == "rmse_m" || name == "nlpd") return Condition::Value{name == "rmse_m" ? "" : "4.5", true};
+  const auto value_of = [](const std::string& name) -> std::optional<WhereCondition::Value> {
+    if (name == "rmse_m" || name == "nlpd") return WhereCondition::Value{name == "rmse_m" ? "" : "4.5", true};
     const auto found = kValues.find(name);
-    return found != kValues.end() ? std::optional(Condition::Value{found->second}) : std::nullopt;
+    return found != kValues.end() ? std::optional(WhereCondition::Value{found->second}) : std::nullopt;
   };
-  return Condition(text_at(text)).holds(value_of, known);
+  return WhereCondition(text_at(text)).holds(value_of, known);
 }
 
 std::string refusal(const std::string& text) {
@@ -47,33 +47,33 @@ void none_holds(const Texts& texts) {
   for (const std::string& text : texts) EXPECT_FALSE(holds(text)) << text;
 }
 
-TEST(Condition, ComparesNumbersAsNumbers) {
+TEST(WhereCondition, ComparesNumbersAsNumbers) {
   // As texts, 9 would be greater than 17.
   all_hold({"taps == 17", "taps == 17.0", "taps == 1.7e1", "taps > 9", "taps >= 17", "taps <= 17", "taps > -17"});
   none_holds({"taps != 17.0", "taps < 9", "taps > 17", "taps < 17"});
 }
 
-TEST(Condition, ComparesQuantitiesWithTheirUnits) {
+TEST(WhereCondition, ComparesQuantitiesWithTheirUnits) {
   all_hold({"reach == 1 cm", "reach == 1cm", "reach==0.01m", "reach < 11 mm and reach > 0.9 cm",
             "belief.height.noise <= 100 um"});
 }
 
-TEST(Condition, ComparesTextsAsTheyStand) {
+TEST(WhereCondition, ComparesTextsAsTheyStand) {
   all_hold({"belief.surface == two_part", "belief.surface != single", "name == object i", "name == 'object i'",
             "belief.surface != 17"});
   none_holds({"belief.surface == single", "taps == many"});
 }
 
-TEST(Condition, TakesTheRightForANameWhereOneIsKnown) {
+TEST(WhereCondition, TakesTheRightForANameWhereOneIsKnown) {
   all_hold({"reach == clearance", "seed < taps", "kernel != belief.surface"});
 }
 
-TEST(Condition, TakesWhatIsInQuotesForAText) {
+TEST(WhereCondition, TakesWhatIsInQuotesForAText) {
   all_hold({"taps == \"17\"", "name != ') and ('"});
   none_holds({"kernel == 'kernel'", "taps == '17.0'"});
 }
 
-TEST(Condition, AgreesWithATruthTable) {
+TEST(WhereCondition, AgreesWithATruthTable) {
   // seed == 3 is true and seed == 4 is false. All combinations of three comparisons are compared with C++'s operators.
   for (int bits = 0; bits < 8; ++bits) {
     const auto word = [&](int bit) { return (bits >> bit & 1) != 0 ? std::string("seed == 3") : "seed == 4"; };
@@ -87,7 +87,7 @@ TEST(Condition, AgreesWithATruthTable) {
   }
 }
 
-TEST(Condition, DoesNotHoldOfANameWithoutValue) {
+TEST(WhereCondition, DoesNotHoldOfANameWithoutValue) {
   for (const char* sign : {"==", "!=", "<", "<=", ">", ">="}) {
     EXPECT_FALSE(holds(std::string("acquisition.beta ") + sign + " 2"));
     EXPECT_FALSE(holds(std::string("taps ") + sign + " acquisition.beta"));
@@ -95,7 +95,7 @@ TEST(Condition, DoesNotHoldOfANameWithoutValue) {
   EXPECT_TRUE(holds("not acquisition.beta == 2"));
 }
 
-TEST(Condition, DoesNotHoldOfAResultThatIsMissingNorDoesItsNegation) {
+TEST(WhereCondition, DoesNotHoldOfAResultThatIsMissingNorDoesItsNegation) {
   for (const char* sign : {"==", "!=", "<", "<=", ">", ">="}) {
     const std::string comparison = std::string("rmse_m ") + sign + " 2 mm";
     none_holds({comparison, "not " + comparison, "not not " + comparison, "not (" + comparison + " and taps == 17)",
@@ -108,7 +108,7 @@ TEST(Condition, DoesNotHoldOfAResultThatIsMissingNorDoesItsNegation) {
   all_hold({"nlpd == 4.5", "not nlpd == 4"});
 }
 
-TEST(Condition, JoinsWhatIsUndecidedByKleenesTruthTables) {
+TEST(WhereCondition, JoinsWhatIsUndecidedByKleenesTruthTables) {
   // -1 stands for undecided. The reference evaluates all completions: a formula is decided if they agree.
   const auto comparison = [](int truth) {
     return std::string(truth < 0 ? "rmse_m > 0 m" : truth == 1 ? "seed == 3" : "seed == 4");
@@ -126,12 +126,12 @@ TEST(Condition, JoinsWhatIsUndecidedByKleenesTruthTables) {
   }
 }
 
-TEST(Condition, LooksNoFurtherThanItNeedsTo) {
+TEST(WhereCondition, LooksNoFurtherThanItNeedsTo) {
   EXPECT_FALSE(holds("spacing != none and spacing > 2 mm"));
   EXPECT_TRUE(holds("spacing == none or spacing > 2 mm"));
 }
 
-TEST(Condition, RefusesANameThatIsNotKnownWhereverItStands) {
+TEST(WhereCondition, RefusesANameThatIsNotKnownWhereverItStands) {
   EXPECT_EQ(refusal("taps == 1 and belief.surfac == single"),
             "c.yaml:3:5: the condition 'belief.surfac == single' has the unknown name 'belief.surfac', did you mean "
             "'belief.surface'?");
@@ -139,7 +139,7 @@ TEST(Condition, RefusesANameThatIsNotKnownWhereverItStands) {
             "c.yaml:3:5: the condition 'tap == 3' has the unknown name 'tap', did you mean 'taps'?");
 }
 
-TEST(Condition, RefusesAnOrderOfTexts) {
+TEST(WhereCondition, RefusesAnOrderOfTexts) {
   EXPECT_EQ(refusal("belief.surface < single"),
             "c.yaml:3:5: the condition 'belief.surface < single' compares the order of texts: 'two_part' and 'single', "
             "compare texts with == or !=");
@@ -148,7 +148,7 @@ TEST(Condition, RefusesAnOrderOfTexts) {
             "with == or !=");
 }
 
-TEST(Condition, RefusesUnitsThatDoNotGoTogether) {
+TEST(WhereCondition, RefusesUnitsThatDoNotGoTogether) {
   EXPECT_EQ(refusal("reach > 2 s"),
             "c.yaml:3:5: the condition 'reach > 2 s' compares a length ('10 mm') with a time ('2 s'), give both the "
             "same dimension");
@@ -157,7 +157,7 @@ TEST(Condition, RefusesUnitsThatDoNotGoTogether) {
             "same dimension");
 }
 
-TEST(Condition, RefusesWhatIsNoCondition) {
+TEST(WhereCondition, RefusesWhatIsNoCondition) {
   const std::string how_to = ", write it like taps >= 12 and not belief.surface == two_part";
   const auto expect = [](const std::string& text, const std::string& rest) {
     EXPECT_EQ(refusal(text), "c.yaml:3:5: the condition '" + text + "': " + rest);
@@ -178,7 +178,7 @@ TEST(Condition, RefusesWhatIsNoCondition) {
   expect("name == 'object", "a quote is not closed, close it");
 }
 
-TEST(Condition, SaysHowToWriteWhatOtherLanguagesWrite) {
+TEST(WhereCondition, SaysHowToWriteWhatOtherLanguagesWrite) {
   const auto hint = [](const std::string& text) {
     const std::string line = refusal(text);
     return line.substr(line.rfind(": ") + 2);
@@ -193,7 +193,7 @@ TEST(Condition, SaysHowToWriteWhatOtherLanguagesWrite) {
   EXPECT_EQ(hint("taps > 1 < 5"), "'<' is not expected here, join two comparisons by 'and'");
 }
 
-TEST(Condition, RefusesWhatIsNestedTooDeeply) {
+TEST(WhereCondition, RefusesWhatIsNestedTooDeeply) {
   const std::string deep = std::string(50000, '(') + "taps > 3" + std::string(50000, ')');
   EXPECT_NE(refusal(deep).find("nested too deeply, at most 100 levels"), std::string::npos);
   std::string nots;
@@ -201,10 +201,10 @@ TEST(Condition, RefusesWhatIsNestedTooDeeply) {
   EXPECT_NE(refusal(nots + "taps > 3").find("nested too deeply"), std::string::npos);
 }
 
-TEST(Condition, RefusesWhatIsNoText) {
+TEST(WhereCondition, RefusesWhatIsNoText) {
   Tree list = Tree::list();
   list.place = text_at("").place;
-  EXPECT_EQ(test::error_of([&] { const Condition condition(list); }),
+  EXPECT_EQ(test::error_of([&] { const WhereCondition condition(list); }),
             "c.yaml:3:5: a condition is a text, write it like taps >= 12 and not belief.surface == two_part");
 }
 

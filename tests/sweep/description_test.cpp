@@ -29,9 +29,9 @@ SweepDescription described(const std::string& sweep, const std::vector<std::stri
 /// Returns the wanted combinations, for example "a=1 b=x; a=1 b=y; ".
 std::string shown(const SweepDescription& description, const std::map<std::string, std::string>& base = {}) {
   std::string out;
-  const auto value_of = [&](const std::string& name) -> std::optional<Condition::Value> {
+  const auto value_of = [&](const std::string& name) -> std::optional<WhereCondition::Value> {
     const auto found = base.find(name);
-    return found != base.end() ? std::optional(Condition::Value{found->second}) : std::nullopt;
+    return found != base.end() ? std::optional(WhereCondition::Value{found->second}) : std::nullopt;
   };
   for (const Combination& combination : description.combinations()) {
     if (!description.wanted(combination, value_of)) continue;
@@ -119,7 +119,7 @@ TEST(Sobol, FillsEveryBinaryBoxAlike) {
   const auto axes = sobol_axes(parse_yaml("{samples: 64, keys: {a: 'uniform(0, 1)', b: 'uniform(0, 1)'}}", "c.yaml"),
                                new_value_count());
   ASSERT_EQ(axes.size(), 2U);
-  for (const Axis& axis : axes) {
+  for (const SweepAxis& axis : axes) {
     std::map<int, int> cells;
     for (const Tree& value : axis.values) ++cells[static_cast<int>(std::atof(value.text.c_str()) * 64)];
     EXPECT_EQ(cells.size(), 64U) << "one in each cell";
@@ -274,7 +274,7 @@ TEST(Words, RefuseBlocksThatThereAreNot) {
 }
 
 TEST(Words, KeepWhatIsExpectedApart) {
-  const SweepWords words = parse_sweep_words({"expect.rmse_m=<= 2 cm", "seed=1,2"});
+  const SweepOverrides words = parse_sweep_words({"expect.rmse_m=<= 2 cm", "seed=1,2"});
   ASSERT_EQ(words.expectations.size(), 1U);
   EXPECT_EQ(words.expectations[0].path, "expect.rmse_m");
   ASSERT_EQ(words.axes.size(), 1U);

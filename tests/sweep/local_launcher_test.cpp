@@ -45,10 +45,10 @@ class TwoJobs : public testing::Test {
 class Returning : public Launcher {
  public:
   void submit(const std::vector<std::size_t>& jobs) override { state_.returned = jobs; }
-  State poll(double) override { return state_; }
+  PollResult poll(double) override { return state_; }
   void cancel() override {}
 
-  State state_;
+  PollResult state_;
 };
 
 TEST_F(TwoJobs, WithoutAFolderAreNotRecordedWhichIsSaidInPrintableText) {
@@ -66,7 +66,7 @@ TEST_F(TwoJobs, AreDoneByTheirRecordsThoughAnotherNodesFilesAreNotSeenYet) {
   for (std::size_t index : {0, 1}) {
     RunDirectory held(job(index));
     held.begin(Tree::map({}));
-    held.end({Ending::How::done, "tap budget", {}, {}});
+    held.end({Ending::EndKind::done, "tap budget", {}, {}});
     std::filesystem::remove(job(index) / kSummaryFile);
   }
   SweepProgress last;
@@ -85,7 +85,7 @@ TEST_F(TwoJobs, ThatAreKilledBeforeTheirAttemptIsNotedAreNotBegunForEver) {
   });
   LocalLauncher local = launcher();
   local.submit({0});
-  Launcher::State state;
+  Launcher::PollResult state;
   int polls = 0;
   do state = local.poll(10.0);
   while (!state.empty_handed() && ++polls < 20);

@@ -300,7 +300,7 @@ Pareto on_two_scenes(const char* where = nullptr) {
     }
   }
   if (where == nullptr) return make_pareto(sweep, results, "robot_seconds", "rmse_m");
-  const Condition condition(Tree::scalar(where, true));
+  const WhereCondition condition(Tree::scalar(where, true));
   return make_pareto(sweep, results, "robot_seconds", "rmse_m", &condition);
 }
 

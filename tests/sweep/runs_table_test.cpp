@@ -62,7 +62,8 @@ class RunsTable : public InFolder {
   }
   static std::vector<std::string> names_where(const std::vector<ListedRecord>& records, const std::string& where) {
     std::vector<std::string> names;
-    for (const Row& row : rows_where(records, *Condition::of_command_line(where))) names.push_back(row.text("name"));
+    for (const Row& row : rows_where(records, *WhereCondition::of_command_line(where)))
+      names.push_back(row.text("name"));
     return names;
   }
 };

@@ -168,7 +168,7 @@ class FakeSlurm : public ::testing::Test {
   /// Polls until jobs return.
   static std::vector<std::size_t> returned(Launcher& launcher) {
     for (;;) {
-      const Launcher::State state = launcher.poll(0.1);
+      const Launcher::PollResult state = launcher.poll(0.1);
       if (!state.returned.empty() || state.empty_handed()) return state.returned;
     }
   }
@@ -278,7 +278,7 @@ TEST_F(FakeSlurm, CountsAndReturnsJobsByQueueAndDirectory) {
   folder_.write("runs/name/id/jobs/job1/record.jsonl", ended);
   folder_.write("runs/name/id/jobs/job4/record.jsonl", ended);
   folder_.write("queue", "100 R\n100 PD\n55 R\n");  // 55 belongs to another user
-  Launcher::State state;
+  Launcher::PollResult state;
   while (state.returned.empty()) state = one->poll(0.1);
   EXPECT_THAT(state.returned, ElementsAre(1, 4));
   EXPECT_EQ(state.running, 2);
@@ -293,7 +293,7 @@ TEST_F(FakeSlurm, ASilentQueueReturnsNothing) {
   one->submit({0, 1});
   answer("squeue", "echo 'slurm_load_jobs error: Unable to contact slurm controller'; exit 1");
   while (calls("squeue").size() < 2) {
-    const Launcher::State state = one->poll(0.1);
+    const Launcher::PollResult state = one->poll(0.1);
     EXPECT_THAT(state.returned, IsEmpty());
     EXPECT_EQ(state.running + state.waiting, 2);
   }

@@ -67,7 +67,7 @@ class LabelsReadAgain : public Shell {
     EXPECT_NE(count(table, "object"), count(end, "object")) << "the seed shows nothing";
 
     // The record: taps.csv has labels as they were made, the summary names the others.
-    const std::vector<Relabelled> relabelled = relabelled_in(summary);
+    const std::vector<RelabelledContact> relabelled = relabelled_in(summary);
     Labels recorded;
     for (const Cells& tap : csv_rows(text_of(directory / "taps.csv"))) {
       const int number = std::stoi(tap.at("tap"));
@@ -75,7 +75,7 @@ class LabelsReadAgain : public Shell {
       if (table.at(number) != "object" && table.at(number) != "desk") continue;
       EXPECT_EQ(recorded[number], table.at(number));
     }
-    for (const Relabelled& one : relabelled) recorded[one.tap] = one.on_object ? "object" : "desk";
+    for (const RelabelledContact& one : relabelled) recorded[one.tap] = one.on_object ? "object" : "desk";
     EXPECT_EQ(count(recorded, "object"), summary.number("object_taps").value());
     EXPECT_EQ(palpate({"replay", directory}).status, 0);
 

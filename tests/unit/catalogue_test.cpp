@@ -31,10 +31,10 @@ class Records : public InFolder {
     return run(directory, minute);
   }
   fs::path runs() const { return folder_.path() / "runs"; }
-  fs::path found(const std::string& words, Wanted wanted = Wanted::any) const {
+  fs::path found(const std::string& words, RecordKind wanted = RecordKind::any) const {
     return find_record(words, wanted, runs());
   }
-  std::string refusal(const std::string& words, Wanted wanted = Wanted::any) const {
+  std::string refusal(const std::string& words, RecordKind wanted = RecordKind::any) const {
     return error_of([&] { found(words, wanted); }, Error::Kind::usage);
   }
 
@@ -120,17 +120,17 @@ TEST_F(Records, BegunLastAreMeantByLatest) {
   EXPECT_EQ(found("first@latest"), last);
   EXPECT_EQ(found((runs() / "first").string() + "@latest"), last);
   EXPECT_EQ(found(runs().string() + "@latest"), other);
-  EXPECT_EQ(found(runs().string() + "@latest", Wanted::run), last);
+  EXPECT_EQ(found(runs().string() + "@latest", RecordKind::run), last);
 }
 
 TEST_F(Records, OfTheKindThatACommandTakesAreMeantWhereThereAreAny) {
   const fs::path one = run("first/000000000001", 1);
   const fs::path many = sweep("first/000000000002", 2);
-  EXPECT_EQ(found("first", Wanted::run), one);
-  EXPECT_EQ(found("first", Wanted::sweep), many);
+  EXPECT_EQ(found("first", RecordKind::run), one);
+  EXPECT_EQ(found("first", RecordKind::sweep), many);
   EXPECT_THAT(refusal("first"), HasSubstr("matches 2 runs and sweeps: "));
   const fs::path alone = sweep("many/000000000003", 3);
-  EXPECT_EQ(found("many", Wanted::run), alone) << "the command says what it cannot do with a sweep";
+  EXPECT_EQ(found("many", RecordKind::run), alone) << "the command says what it cannot do with a sweep";
 }
 
 TEST_F(Records, ThatAreDamagedAreFoundForTheCommandToSaySo) {

@@ -119,7 +119,7 @@ TEST(StartedProgram, IsKilledWithTheObjectAndNoLongerWaitedForThanIsSaid) {
 }
 
 TEST(StartedProgram, SeesTheEnvironmentThatItIsGiven) {
-  Program program{{"sh", "-c", "echo ${PALPATE_SEEN-hidden} ${HOME-hidden}"}};
+  ProgramCall program{{"sh", "-c", "echo ${PALPATE_SEEN-hidden} ${HOME-hidden}"}};
   program.environment = {"PALPATE_SEEN=yes"};
   const auto child = ChildProcess::start(program);
   child->wait();
@@ -128,7 +128,7 @@ TEST(StartedProgram, SeesTheEnvironmentThatItIsGiven) {
 
 TEST(StartedProgram, IsInAGroupOfItsOwnUnlessItIsToEndAtCtrlCWithThisProcess) {
   const std::vector<std::string> words{"sh", "-c", "echo $$; exec sleep 1000"};
-  Program ours{words};
+  ProgramCall ours{words};
   ours.own_group = false;
   const auto own = ChildProcess::start({words});
   const auto with_us = ChildProcess::start(ours);
@@ -140,7 +140,7 @@ TEST(StartedProgram, IsInAGroupOfItsOwnUnlessItIsToEndAtCtrlCWithThisProcess) {
 TEST(StartedProgram, InAGroupOfItsOwnIgnoresNoSignalThatThisProcessIgnores) {
   const std::string ignored = "grep SigIgn /proc/self/status | cut -f 2";
   const auto before = std::signal(SIGHUP, SIG_IGN);
-  Program ours{{"sh", "-c", ignored}};
+  ProgramCall ours{{"sh", "-c", ignored}};
   ours.own_group = false;
   const auto with_us = ChildProcess::start(ours);
   const std::string fresh = shell(ignored);

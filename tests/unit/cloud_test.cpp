@@ -56,8 +56,8 @@ TEST(Cloud, HasNoErrorAgainstItselfAndTheKnownOneAgainstAShiftedCopy) {
   EXPECT_EQ(compare_clouds({}, one).f_score, 0.0);
 }
 
-TEST(Bundle, HasLinesFromAllSidesThatBeginOutsideAndAboveTheDesk) {
-  const Bundle bundle({0.1, 0.1, 0.05}, 0.15, 100, 0.02);
+TEST(LineBundle, HasLinesFromAllSidesThatBeginOutsideAndAboveTheDesk) {
+  const LineBundle bundle({0.1, 0.1, 0.05}, 0.15, 100, 0.02);
   Vector3d least = Vector3d::Ones();
   Vector3d most = -Vector3d::Ones();
   for (const Line& line : bundle.lines) {

@@ -136,7 +136,7 @@ TEST(Experiment, RecordsTheSameWhoeverFollowsItsErrors) {
 
 TEST(Belief, ThatNobodyAskedForOrThatIsOldIsNotRead) {
   Prepared prepared("paper/object_i.yaml", {"taps=4"});
-  const HeightMap& belief = prepared.belief();
+  const HeightMapBelief& belief = prepared.belief();
   const auto weight = [&] { belief.values(quantity::kLabelMean); };
   EXPECT_THROW(weight(), std::logic_error);
   prepared.read({quantity::kLabelMean});

@@ -15,7 +15,7 @@ namespace {
 /// Runs of configs/default.yaml with overrides, in one folder.
 class Earlier : public InFolder, public testing::WithParamInterface<std::vector<std::string>> {
  protected:
-  RunReport run(int taps) {
+  RunConclusion run(int taps) {
     std::vector<std::string> words = GetParam();
     words.push_back("taps=" + std::to_string(taps));
     const fs::path directory = folder_.path() / std::to_string(taps);
@@ -45,13 +45,13 @@ bool tells_the_budget(const std::string& name) { return name.find("engine_reason
 double number(const Row& row, const std::string& name) { return row.number(name).value(); }
 
 TEST_P(Earlier, EqualsTheRunThatHadThisBudget) {
-  const RunReport whole = run(14);
+  const RunConclusion whole = run(14);
   const RecordedRun recorded = read_recorded_run(test::shared_host(), whole.directory);
   const std::vector<Row> earlier = summaries_after(recorded, {5, 9});
   ASSERT_EQ(earlier.size(), 2U);
   for (const int taps : {5, 9}) {
     const Row& row = earlier[taps == 5 ? 0 : 1];
-    const RunReport shorter = run(taps);
+    const RunConclusion shorter = run(taps);
     for (const Row* fields : {&row, &shorter.summary}) {
       for (const auto& [name, value] : fields->fields) {
         if (name == "id" || depends_on_machine(name) || tells_the_budget(name)) continue;
@@ -64,7 +64,7 @@ TEST_P(Earlier, EqualsTheRunThatHadThisBudget) {
 }
 
 TEST_P(Earlier, HasItsShareOfTheTimes) {
-  const RunReport whole = run(14);
+  const RunConclusion whole = run(14);
   const std::vector<Row> earlier = summaries_after(read_recorded_run(test::shared_host(), whole.directory), {5, 9});
   for (const char* name : {"wall_seconds", "compute_seconds", "robot_seconds"}) {
     EXPECT_GT(number(earlier[0], name), 0.0) << name;

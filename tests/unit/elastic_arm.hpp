@@ -28,9 +28,9 @@ struct ElasticArm {
   /// Lets a real arm's tap come down until it has ended.
   tapping::GuardedTap tap(const tapping::MotionOptions& motion) {
     using tapping::GuardedTap;
-    GuardedTap out(motion, tapping::plan_descent(motion, 0.0, {}), GuardedTap::Arm::real);
-    backends::Normal normal{Random(seed, "elastic arm")};
-    backends::Arm motors(JointLag{0.35, 0.0}, GuardedTap::kPeriod, motion.hover);
+    GuardedTap out(motion, tapping::plan_descent(motion, 0.0, {}), GuardedTap::ArmKind::real);
+    backends::GaussianNumbers normal{Random(seed, "elastic arm")};
+    backends::SimulatedAxis motors(JointLag{0.35, 0.0}, GuardedTap::kPeriod, motion.hover);
     double set_point = motion.hover;
     while (!out.done()) {
       motors.follow(set_point);

@@ -7,7 +7,7 @@
 namespace palpate::test {
 namespace {
 
-TEST(Lowrank, StaysWithinItsOwnErrorBoundForAnyTolerance) {
+TEST(LowrankEngine, StaysWithinItsOwnErrorBoundForAnyTolerance) {
   const Data data = draw(60);
   const CandidateGrid candidates = grid(40, 40);
   const GaussianProcess exact = processed(data, candidates, settings_of(Kind::dense));
@@ -27,7 +27,7 @@ TEST(Lowrank, StaysWithinItsOwnErrorBoundForAnyTolerance) {
   }
 }
 
-TEST(Lowrank, TellsItsErrorInPriorStandardDeviationsWhateverThePrior) {
+TEST(LowrankEngine, TellsItsErrorInPriorStandardDeviationsWhateverThePrior) {
   const Data data = draw(20);
   const CandidateGrid candidates = grid(40, 40);
   EngineSettings settings = settings_of(Kind::lowrank);
@@ -53,7 +53,7 @@ TEST(Lowrank, TellsItsErrorInPriorStandardDeviationsWhateverThePrior) {
   EXPECT_NEAR(bounds[2], bounds[1], 1e-3 * bounds[1]);
 }
 
-TEST(Lowrank, OfTapsOnCandidatesKeepsTwelveDigits) {
+TEST(LowrankEngine, OfTapsOnCandidatesKeepsTwelveDigits) {
   Data data = draw(60);
   const CandidateGrid candidates = grid(40, 40);
   Random random(3, "engine_test/places");

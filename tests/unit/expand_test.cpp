@@ -128,7 +128,7 @@ TEST(AxisText, RefusesAGapBetweenCommas) {
 
 TEST(AxisText, IsWrittenAsWhatReadsBackAsTheSame) {
   const auto again = [](const std::string& text) {
-    const Axis axis = parse_axis(text, fresh());
+    const SweepAxis axis = parse_axis(text, fresh());
     Tree sweep = Tree::map();
     sweep.at("k") = axis.written;
     const Tree file = parse_yaml(to_yaml(sweep), "c.yaml");

@@ -117,25 +117,25 @@ TEST(Form, OverlapsTheSameFormsInATableAsAlone) {
 }
 
 /// For each position of a grid, how many spans have it.
-std::vector<int> span_counts(const Grid& grid, const Primitive& primitive) {
-  Grid::Spans spans;
+std::vector<int> span_counts(const CoverageGrid& grid, const Primitive& primitive) {
+  CoverageGrid::Spans spans;
   grid.add_spans(primitive, spans);
   std::vector<int> out(static_cast<std::size_t>(grid.size()), 0);
-  for (const Grid::Span& span : spans) {
+  for (const CoverageGrid::Span& span : spans) {
     for (int i = span.begin; i < span.end; ++i) ++out[static_cast<std::size_t>(i)];
   }
   return out;
 }
 
-TEST(Grid, HasSpansOfThePositionsInAPrimitive) {
+TEST(CoverageGrid, HasSpansOfThePositionsInAPrimitive) {
   Prior::Settings settings = default_prior();
   settings.hole_probability = 0.6;
   const Prior prior(settings);
   Random random(3, "form test: spans");
   for (const auto& [columns, rows] : {std::pair{97, 89}, {31, 200}, {150, 3}, {1, 40}, {40, 1}, {1, 1}}) {
     const Points positions = test::lattice(columns, rows);
-    const Grid grid(positions);
-    const Grid scattered(test::doubled(positions, 0.0));
+    const CoverageGrid grid(positions);
+    const CoverageGrid scattered(test::doubled(positions, 0.0));
     for (int k = 0; k < 60; ++k) {
       const Primitive primitive = prior.draw_primitive(random);
       const std::vector<int> in_rows = span_counts(grid, primitive);
@@ -153,9 +153,9 @@ TEST(Grid, HasSpansOfThePositionsInAPrimitive) {
   }
 }
 
-TEST(Grid, MatchesOnlyItsPositions) {
+TEST(CoverageGrid, MatchesOnlyItsPositions) {
   const Points positions = test::lattice(5, 4);
-  const Grid grid(positions);
+  const CoverageGrid grid(positions);
   EXPECT_TRUE(grid.matches(positions));
   EXPECT_FALSE(grid.matches(test::lattice(4, 5)));
   EXPECT_FALSE(grid.matches(test::scattered(20)));

@@ -130,7 +130,7 @@ TEST(FromAnySide, HalfOfTheLinesGoAnywhereHoweverManyTheBackendRejects) {
   const auto half = [](const Candidates& lines, BoolOut accepted) { accepted = lines.directions.col(0).array() > 0.0; };
   for (std::size_t count = 1; count <= 60; ++count) {
     Random random(count, "lines");
-    const SampledLines drawn = sample_lines(Region({0.26, 0.26}), 0.0, count, nullptr, random, half);
+    const SampledLines drawn = sample_lines(SearchBall({0.26, 0.26}), 0.0, count, nullptr, random, half);
     EXPECT_EQ(drawn.anywhere.size(), count);
     EXPECT_GT(drawn.lines.directions.col(0).minCoeff(), 0.0);
     EXPECT_EQ(std::count(drawn.anywhere.begin(), drawn.anywhere.end(), true), (static_cast<int>(count) + 1) / 2);
@@ -205,9 +205,9 @@ TEST(FromAnySide, OfWhatIsThinnerThanACubeNoVolumesAreCompared) {
 
 /// The true surface where lines from all sides meet it, and the cubes that are solid; of a desk at height 0.
 struct TrueSurface {
-  TrueSurface(const Scene& scene, const Region& region)
+  TrueSurface(const Scene& scene, const SearchBall& region)
       : cubes(Cubes(region.centre, region.outside(), 0.004).of(scene)) {
-    for (const Line& line : Bundle(region.centre, region.outside(), 150, 0.006).lines) {
+    for (const Line& line : LineBundle(region.centre, region.outside(), 150, 0.006).lines) {
       const double hit = scene.first_intersection(line);
       if (hit < distance_down_to(0.0, line)) cloud.push_back(line.origin + hit * line.direction);
     }
@@ -232,7 +232,7 @@ Errors errors_against(const Scene& scene, Belief& belief) {
 TEST(FromAnySide, TheTruthIsTheSceneAsItStandsAfterWhatWasPushed) {
   // A push as long as this one is not cut short by the rim of the area.
   Touching run({"taps=9", "scene.effects={push: {after: 4, distance: 3 cm, turn: 0 deg}}"});
-  const Region region(run.experiment.scene().area());
+  const SearchBall region(run.experiment.scene().area());
   const TrueSurface before(*run.experiment.truth(), region);
   run.experiment.run(run.journal, 4);
   const TrueSurface after(*run.experiment.truth(), region);

@@ -25,7 +25,7 @@ RunOutcome failed(int job) {
 }
 
 /// The verdicts over runs on what stands behind `expect:`.
-std::vector<Verdict> verdicts(const std::string& expect, const std::vector<RunOutcome>& runs) {
+std::vector<ExpectationResult> verdicts(const std::string& expect, const std::vector<RunOutcome>& runs) {
   const Tree tree = parse_yaml("expect: " + expect + "\n", "c.yaml");
   return judge(read_expectations(tree.find("expect")), runs);
 }
@@ -33,7 +33,7 @@ std::vector<Verdict> verdicts(const std::string& expect, const std::vector<RunOu
 /// What each expectation got, and whether it holds: "yes 11", "no 3 in job 1".
 std::vector<std::string> judged(const std::string& expect, const std::vector<RunOutcome>& runs) {
   std::vector<std::string> out;
-  for (const Verdict& one : verdicts(expect, runs)) out.push_back((one.holds ? "yes " : "no ") + one.got);
+  for (const ExpectationResult& one : verdicts(expect, runs)) out.push_back((one.holds ? "yes " : "no ") + one.got);
   return out;
 }
 

@@ -30,7 +30,7 @@ struct Trial {
   GuardedTap tap;
 
   Trial(const std::string& yaml, double surface, double stiffness, const Extra& extra = kNothing,
-        GuardedTap::Arm arm = GuardedTap::Arm::simulated, const std::optional<Prediction>& guess = {})
+        GuardedTap::ArmKind arm = GuardedTap::ArmKind::simulated, const std::optional<Prediction>& guess = {})
       : options(motion(yaml)), descent(plan_descent(options, 0.0, guess)), tap(options, descent, arm) {
     double position = descent.hover;
     for (int i = 0; !tap.done() && i < 100'000; ++i) {
@@ -52,7 +52,7 @@ TEST(GuardedTap, OnARigidSurfaceTakesTheTimeOfTheClosedFormAndFindsItsHeight) {
     for (int i = 0; i < 50; ++i) {
       const double surface = 0.134 * random.uniform();
       const Prediction guess{surface - 0.03 + 0.08 * random.uniform(), 0.005};
-      const Trial run(yaml, surface, 1e7, kNothing, GuardedTap::Arm::simulated, guess);
+      const Trial run(yaml, surface, 1e7, kNothing, GuardedTap::ArmKind::simulated, guess);
       // A start within three periods of the surface may be reached before the contact on the way is certain.
       if (std::abs(run.descent.start - surface) < 0.005) continue;
       const MotionOptions& options = run.options;
@@ -71,7 +71,7 @@ TEST(GuardedTap, OnARigidSurfaceTakesTheTimeOfTheClosedFormAndFindsItsHeight) {
 
 TEST(GuardedTap, NeverCommandsFasterThanItsSpeedsNorBelowItsFloor) {
   for (const char* yaml : kMotions) {
-    const Trial run(yaml, 0.03, 1500.0, kNothing, GuardedTap::Arm::simulated, Prediction{0.02, 0.01});
+    const Trial run(yaml, 0.03, 1500.0, kNothing, GuardedTap::ArmKind::simulated, Prediction{0.02, 0.01});
     double last = run.descent.hover;
     for (const Moment& one : run.moments) {
       EXPECT_GE(one.set_point, run.descent.floor);
@@ -142,7 +142,7 @@ TEST(GuardedTap, OfARealArmTaresInEveryPauseOfThePaper) {
   const auto wanders = [](int, double height) { return 100.0 * (0.135 - height); };
   const Trial simulated(yaml, 0.0, 1500.0, wanders);
   EXPECT_GT(simulated.tap.result().height, 0.02) << "a contact in the air";
-  const Trial real(yaml, 0.0, 1500.0, wanders, GuardedTap::Arm::real);
+  const Trial real(yaml, 0.0, 1500.0, wanders, GuardedTap::ArmKind::real);
   EXPECT_EQ(real.tap.result().outcome, Outcome::contact);
   EXPECT_LT(real.tap.result().height, 0.0);
   EXPECT_GT(real.tap.result().height, -0.01);
@@ -152,14 +152,14 @@ TEST(GuardedTap, OfARealArmDoesNotTareAContactAwayThatBeginsInAPause) {
   // The second step ends at 7.5 cm and presses with 8 N: less than the threshold, more than half of it.
   const double surface = 0.075 + 8.0 / 1500.0;
   const Trial real("{type: paper, threshold: 10 N, step: 3 cm, hover: 13.5 cm}", surface, 1500.0, kNothing,
-                   GuardedTap::Arm::real);
+                   GuardedTap::ArmKind::real);
   EXPECT_EQ(real.tap.result().outcome, Outcome::contact);
   EXPECT_LT(real.tap.result().force, 10.0 + 4 * 0.024 * kPeriod * 1500.0) << "as if the pause had not been";
 }
 
 TEST(GuardedTap, OfARealArmPutsItsSetPointWhereTheArmIsInThePapersMotionToo) {
   const MotionOptions options = motion("{type: paper}");
-  GuardedTap tap(options, plan_descent(options, 0.0, {}), GuardedTap::Arm::real);
+  GuardedTap tap(options, plan_descent(options, 0.0, {}), GuardedTap::ArmKind::real);
   double set_point = options.hover;
   double measured = options.hover;
   for (int i = 0; i < 1000 && !(measured < 0.06 && set_point == measured); ++i) {
@@ -216,7 +216,7 @@ TEST(GuardedTap, OfARealArmGoesOnWhereTheForceDoesNotLast) {
       const double zero = 20.0 * (0.135 - position);
       return position < 0.101 && loud++ < 3 ? zero + 1.2 * threshold : zero;
     };
-    const Trial run(yaml, 0.03, 1e6, wandered, GuardedTap::Arm::real);
+    const Trial run(yaml, 0.03, 1e6, wandered, GuardedTap::ArmKind::real);
     EXPECT_EQ(run.tap.result().outcome, Outcome::contact) << yaml;
     EXPECT_NEAR(run.tap.result().height, 0.03, 0.002) << yaml;
   }
@@ -233,7 +233,7 @@ TEST(GuardedTap, OfTwoStagesGoesOnAfterAContactThatWasNone) {
 
 TEST(GuardedTap, BacksOffWhenThePredictionLetItHitTheSurfaceFast) {
   const Trial run("{type: continuous, adaptive_hover: {clearance: 1 cm}}", 0.08, 1500.0, kNothing,
-                  GuardedTap::Arm::simulated, Prediction{0.0, 0.001});
+                  GuardedTap::ArmKind::simulated, Prediction{0.0, 0.001});
   EXPECT_NEAR(run.descent.start, 0.012, 1e-12);
   EXPECT_EQ(run.tap.result().outcome, Outcome::contact);
   EXPECT_NEAR(run.tap.result().height, 0.08, 1e-6);

@@ -36,7 +36,7 @@ const Rows kRows{{0, 0, 0, 0, 0, 0, 0},
                  {0, 0, 0, 700, 900, 0, 0},
                  {0, 0, 0, 0, 0, 0, 0}};
 
-class HeightMap : public InFolder {
+class HeightMapShape : public InFolder {
  protected:
   static std::shared_ptr<const Shape> of_file(const fs::path& file, double unit = kUnit) {
     return make<const Shape>(shared_host(), "height_map",
@@ -100,7 +100,7 @@ std::vector<double> meetings(const std::vector<Triangle>& triangles, const Line&
   return out;
 }
 
-TEST_F(HeightMap, IsMetWhereItsTrianglesAre) {
+TEST_F(HeightMapShape, IsMetWhereItsTrianglesAre) {
   const auto shape = of_file(data("map.csv"));
   const std::vector<Triangle> triangles = triangles_of(kRows);
   std::mt19937_64 random(3);
@@ -117,7 +117,7 @@ TEST_F(HeightMap, IsMetWhereItsTrianglesAre) {
     for (std::size_t at = 0; at + 1 < expected.size(); at += 2) {
       if (expected[at + 1] - expected[at] > 1e-9) ends.insert(ends.end(), {expected[at], expected[at + 1]});
     }
-    const std::vector<Stretch> intervals = shape->intervals(line);
+    const std::vector<LineInterval> intervals = shape->intervals(line);
     ASSERT_EQ(2 * intervals.size(), ends.size()) << i;
     for (std::size_t k = 0; k < intervals.size(); ++k) {
       EXPECT_NEAR(intervals[k].begin, ends[2 * k], 1e-9) << i;
@@ -130,7 +130,7 @@ TEST_F(HeightMap, IsMetWhereItsTrianglesAre) {
   EXPECT_GT(met, 1000);
 }
 
-TEST_F(HeightMap, HasTheHeightsOfItsNodesWithTheFirstRowAtTheFarSide) {
+TEST_F(HeightMapShape, HasTheHeightsOfItsNodesWithTheFirstRowAtTheFarSide) {
   const auto shape = of_file(data("map.csv"));
   for (int row = 0; row < 6; ++row) {
     for (int column = 0; column < 7; ++column) {
@@ -142,14 +142,14 @@ TEST_F(HeightMap, HasTheHeightsOfItsNodesWithTheFirstRowAtTheFarSide) {
   EXPECT_NEAR(shape->support({0, 0, 1}), kUnit * 65535, 1e-12);
 }
 
-TEST_F(HeightMap, LeavesOutZerosAroundTheObject) {
+TEST_F(HeightMapShape, LeavesOutZerosAroundTheObject) {
   const auto shape = of("wide.csv", "0,0,0,0,0\n0,0,0,0,0\n0,0,9000,0,0\n0,0,0,0,0\n0,0,0,0,0\n0,0,0,0,0\n");
   EXPECT_NEAR(shape->support({1, 0, 0}), kSpacing, 1e-12);
   EXPECT_NEAR(shape->support({0, 1, 0}), kSpacing, 1e-12);
   EXPECT_NEAR(shape->top(0, 0), 0.009, 1e-12) << "the object's middle is the origin";
 }
 
-TEST_F(HeightMap, HasWallsWhereTheMapEnds) {
+TEST_F(HeightMapShape, HasWallsWhereTheMapEnds) {
   const auto shape = of("block.csv", "20000,20000\n20000,20000\n");
   EXPECT_NEAR(shape->first_intersection({{-1, 0, 0.01}, {1, 0, 0}}), 1 - kSpacing / 2, 1e-12);
   EXPECT_EQ(shape->first_intersection({{-1, 0, 0.021}, {1, 0, 0}}), kInfinity);
@@ -180,7 +180,7 @@ std::string npy(const std::string& type, bool by_columns, const Rows& rows, cons
   return out;
 }
 
-TEST_F(HeightMap, IsTheSameFromEveryFormat) {
+TEST_F(HeightMapShape, IsTheSameFromEveryFormat) {
   const auto expected = of_file(data("map.csv"));
   const auto check = [&](const std::shared_ptr<const Shape>& shape, double precision, const std::string& what) {
     for (double x = -0.0275; x < 0.03; x += 0.005) {
@@ -199,7 +199,7 @@ TEST_F(HeightMap, IsTheSameFromEveryFormat) {
   check(of_file(data("map_8.png"), 256 * kUnit), 256 * kUnit, "8 bits");
 }
 
-TEST_F(HeightMap, ThatIsNoneIsRefusedWithWhatIsWrong) {
+TEST_F(HeightMapShape, ThatIsNoneIsRefusedWithWhatIsWrong) {
   EXPECT_THAT(refusal("a.csv", "1,2\n3\n"), HasSubstr("a.csv:2: has 1 values, the first row has 2"));
   EXPECT_THAT(refusal("a.csv", "x,y\n1,2\n"),
               HasSubstr("a.csv:1: 'x' is not a number, write one row of numbers per line"));

@@ -107,7 +107,7 @@ inline double height_gain(const Touch& one, const Touch& other, double slope) {
   return 0.15 * 0.98 * std::exp(-0.5 * deviation * deviation) / (scale * std::sqrt(2.0 * kPi)) + 0.02;
 }
 
-/// The density of the heights relative to any heights, by the definition of HeightModel: primitive by primitive.
+/// The density of the heights relative to any heights, by the definition of TapHeightModel: primitive by primitive.
 /// Distances are those of the taps as made; primitives contain taps as `seen` after a push.
 inline double height_evidence(const Hypothesis& hypothesis, const std::vector<Touch>& touches,
                               const std::vector<Touch>& seen) {
@@ -244,7 +244,7 @@ inline std::array<Number, kNumbers> numbers_of(const Primitive& primitive, const
   const double sizes = std::log(prior.max_length / prior.min_width);
   const auto size = [&](double half) { return std::log(2.0 * half / prior.min_width) / sizes; };
   const auto of_hole = [&](double value) { return primitive.hollow && !primitive.fitted() ? value : -1.0; };
-  const bool corner = primitive.fitted() && primitive.fit == Primitive::Fit::corner;
+  const bool corner = primitive.fitted() && primitive.fit == Primitive::HolePlacement::corner;
   // Half a turn changes nothing in a form, and the corner of its hole becomes the opposite one.
   const int about = form.sine < 0.0 || (form.sine == 0.0 && form.cosine < 0.0) ? -1 : 1;
   const double dx = hole.x - form.x;

@@ -75,7 +75,7 @@ TEST(Hypothesis, KeepsAFittedHoleWhenItsAxesAreSwapped) {
   for (int k = 0; k < 400; ++k) {
     Primitive primitive = prior.draw_primitive(random);
     if (!primitive.fitted()) continue;
-    corners += primitive.fit == Primitive::Fit::corner ? 1 : 0;
+    corners += primitive.fit == Primitive::HolePlacement::corner ? 1 : 0;
     primitive.form.b = 1.7 * primitive.form.a;
     primitive.fit_hole();
     Primitive ordered = primitive;
@@ -154,7 +154,7 @@ std::pair<Primitive, double> drawn_evenly(const Prior::Settings& prior, Random& 
   out.hollow = random.uniform() < 0.5;
   density *= 0.5;
   if (!out.hollow) return {out, density};
-  out.fit = static_cast<Primitive::Fit>(random.index(3));
+  out.fit = static_cast<Primitive::HolePlacement>(random.index(3));
   density /= 3.0;
   if (out.fitted()) {
     const auto share = [&] { return between(0.0, 1.0); };
@@ -163,7 +163,7 @@ std::pair<Primitive, double> drawn_evenly(const Prior::Settings& prior, Random& 
     const auto corner = static_cast<int>(random.index(4));
     out.side_a = corner % 2 == 0 ? 1 : -1;
     out.side_b = corner / 2 == 0 ? 1 : -1;
-    if (out.fit == Primitive::Fit::corner) density /= 4.0;
+    if (out.fit == Primitive::HolePlacement::corner) density /= 4.0;
     out.fit_hole();
   } else {
     axes(out.hole);

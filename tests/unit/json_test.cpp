@@ -141,7 +141,7 @@ TEST_F(JsonLinesFile, RefusesALineThatIsTooLongTooDeepOrHoldsTooMuch) {
 TEST(JsonRows, OfOneFileHoldNoMoreNamesThanFitIntoMemory) {
   std::string line = "{\"" + std::string(1000, 'n') + "\":{\"\":1";
   for (int i = 1; i < 4000; ++i) line += ",\"\":1";
-  RowLines lines("record.jsonl");
+  JsonLinesReader lines("record.jsonl");
   std::size_t bytes = 0;
   const std::string words = error_of([&] {
     for (;;)

@@ -62,7 +62,7 @@ struct Trial {
 
   AlignedArray a;
   Panels b;
-  Product product;
+  StripProduct product;
   std::vector<double> expected;
 };
 
@@ -152,7 +152,7 @@ TEST_P(Loops, ReadCellsToTheSameBytesAsWrittenDown) {
   constexpr int kWidth = kPanelLines * kLine;
   constexpr int kColumns = 61;
   const AlignedArray cells = drawn(std::size_t{kRows} * kWidth);
-  const Reading reading{-0.25, 0.375, 0.1, 0.3};
+  const MapTransform reading{-0.25, 0.375, 0.1, 0.3};
   for (int count = 0; count <= kWidth; ++count) {
     for (const bool mirrored : {false, true}) {
       std::vector<double> to(std::size_t{kRows} * kColumns, 7.0);

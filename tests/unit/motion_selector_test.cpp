@@ -54,7 +54,7 @@ struct Believed {
   ResolvedConfig config;
   std::unique_ptr<const Scene> scene;
   Context context;
-  HeightMap belief;
+  HeightMapBelief belief;
 };
 
 /// A belief that has nothing but the readings that a test writes down.

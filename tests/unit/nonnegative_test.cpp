@@ -30,7 +30,7 @@ Problem any_problem(int n, int rank, double floor, Random& random) {
   return out;
 }
 
-VectorXd all_of(const Nonnegative& solver, Eigen::Index n) {
+VectorXd all_of(const NonnegativeSolver& solver, Eigen::Index n) {
   VectorXd out = VectorXd::Zero(n);
   for (std::size_t i = 0; i < solver.held().size(); ++i)
     out(solver.held()[i]) = solver.values()(static_cast<Eigen::Index>(i));
@@ -42,7 +42,7 @@ TEST(NonnegativeUnknowns, AreWhereTheSlopeIsNotNegativeAndNothingButZeroIsWhereI
   for (int k = 0; k < 200; ++k) {
     const int n = 1 + static_cast<int>(random.index(40));
     const Problem problem = any_problem(n, 1 + static_cast<int>(random.index(40)), 0.01, random);
-    Nonnegative solver;
+    NonnegativeSolver solver;
     solver.append(problem.s, problem.d);
     solver.solve();
     const VectorXd l = all_of(solver, n);
@@ -60,7 +60,7 @@ TEST(NonnegativeUnknowns, ThatComeOneByOneEndWhereAllAtOnceDo) {
   Random random(2, "test/nonnegative");
   for (int k = 0; k < 50; ++k) {
     const Problem problem = any_problem(30, 10, 0.1, random);
-    Nonnegative once, often;
+    NonnegativeSolver once, often;
     once.append(problem.s, problem.d);
     once.solve();
     for (Eigen::Index n = 0; n < 30; n += 3) {
@@ -77,7 +77,7 @@ TEST(NonnegativeUnknowns, WithWhichTheFormIsNotPositiveDefiniteAreSetAsideAndCou
   for (int k = 0; k < 200; ++k) {
     Problem problem = any_problem(30, 5, 0.0, random);  // of rank 5
     if (k % 2 == 0) problem.s.diagonal().array() -= 0.5;
-    Nonnegative solver;
+    NonnegativeSolver solver;
     for (Eigen::Index n = 0; n < 30; n += 10) {
       solver.append(problem.s.block(0, n, n + 10, 10), problem.d.segment(n, 10));
       solver.solve();
@@ -104,7 +104,7 @@ TEST(NonnegativeUnknowns, OfPlacesCloseToEachOtherAreFoundInTheEnd) {
         problem.s(i, j) = 4e-6 * (1.0 + r) * std::exp(-r) + (i == j ? 2.5e-7 : 0.0);
       }
     }
-    Nonnegative solver;
+    NonnegativeSolver solver;
     const int half = n / 2;
     solver.append(problem.s.topLeftCorner(half, half), problem.d.head(half));
     solver.solve();

@@ -36,7 +36,7 @@ TEST(Onset, IsUnbiasedUnderNoiseAndFarBetterThanTheHeightAtAThreshold) {
   double squares = 0.0;
   constexpr int kTrials = 1000;
   for (int i = 0; i < kTrials; ++i) {
-    backends::Normal normal(Random(seeds.bits(), "normal"));
+    backends::GaussianNumbers normal(Random(seeds.bits(), "normal"));
     auto samples = hinge(0.05, 1500.0, 0.0, 0.0005, 0.02, 0.009);
     for (Sample& one : samples) one.force += 1.5 * normal();
     const double error = onset(samples).value() - 0.05;

@@ -67,7 +67,7 @@ struct BrokenBackend final : Backend {
 
 struct BrokenShape final : Shape {
   double first_intersection(const Line&) const override { fail(); }
-  std::vector<Stretch> intervals(const Line&) const override { fail(); }
+  std::vector<LineInterval> intervals(const Line&) const override { fail(); }
   double support(const Eigen::Vector3d&) const override { fail(); }
   double top(double, double) const override { fail(); }
 };

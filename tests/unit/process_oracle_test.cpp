@@ -30,7 +30,7 @@ const QuantitySet kRead{quantity::kHeightMean, quantity::kHeightStd, quantity::k
 /// Follows a run, and compares both processes with the oracle at every candidate, whenever they have taken in a tap.
 class Comparison final : public Observer {
  public:
-  Comparison(HeightMap& belief, double length_scale)
+  Comparison(HeightMapBelief& belief, double length_scale)
       : belief_(belief),
         oracle_(
             // The squared-exponential kernel of unit variance, point by point.
@@ -71,7 +71,7 @@ class Comparison final : public Observer {
   }
 
  private:
-  HeightMap& belief_;
+  HeightMapBelief& belief_;
   Textbook<Real> oracle_;
   int misses_ = 0;
 };

@@ -17,9 +17,9 @@ namespace {
 
 class AReading : public InFolder {
  protected:
-  using Kind = Reading::Kind;
+  using Kind = FileReading::Kind;
 
-  static Kind kind(const fs::path& file, Origin origin = Origin::record, std::uintmax_t most = 1000) {
+  static Kind kind(const fs::path& file, FileOrigin origin = FileOrigin::record, std::uintmax_t most = 1000) {
     return read_bounded(file, most, origin).kind;
   }
 };
@@ -27,11 +27,11 @@ class AReading : public InFolder {
 TEST_F(AReading, HasEveryByteOfAFileUpToItsLimitAndNothingOfALargerOne) {
   const std::string text("a\0\r\n\xff", 5);
   const fs::path file = folder_.write("x", text);
-  EXPECT_EQ(read_bounded(file, 5, Origin::record).text, text);
-  const Reading large = read_bounded(file, 4, Origin::record);
+  EXPECT_EQ(read_bounded(file, 5, FileOrigin::record).text, text);
+  const FileReading large = read_bounded(file, 4, FileOrigin::record);
   EXPECT_EQ(large.kind, Kind::too_large);
   EXPECT_EQ(large.text, "");
-  EXPECT_EQ(read_bounded(folder_.write("empty", ""), 0, Origin::record).kind, Kind::whole);
+  EXPECT_EQ(read_bounded(folder_.write("empty", ""), 0, FileOrigin::record).kind, Kind::whole);
 }
 
 TEST_F(AReading, OfOneEndOfAFileHasItsBytesAndTellsWhereTheyBegin) {
@@ -39,25 +39,25 @@ TEST_F(AReading, OfOneEndOfAFileHasItsBytesAndTellsWhereTheyBegin) {
   const fs::path file = folder_.write("x", text);
   for (const std::size_t bytes : {0U, 1U, 9U, 10U, 11U, 100000U}) {
     const std::size_t there = std::min<std::size_t>(bytes, text.size());
-    const Reading first = read_begin_bounded(file, bytes, Origin::record);
-    const Reading last = read_end_bounded(file, bytes, Origin::record);
+    const FileReading first = read_begin_bounded(file, bytes, FileOrigin::record);
+    const FileReading last = read_end_bounded(file, bytes, FileOrigin::record);
     EXPECT_EQ(first.text, text.substr(0, there)) << bytes;
     EXPECT_EQ(first.begin, 0U);
     EXPECT_EQ(last.text, text.substr(text.size() - there)) << bytes;
     EXPECT_EQ(last.begin, text.size() - there);
   }
-  EXPECT_EQ(read_end_bounded(folder_.write("empty", ""), 5, Origin::record).text, "");
+  EXPECT_EQ(read_end_bounded(folder_.write("empty", ""), 5, FileOrigin::record).text, "");
 }
 
 TEST_F(AReading, CountsTheBytesOfAFileThatSaysThatItHasNone) {
-  EXPECT_GT(read_bounded("/proc/self/status", 100'000, Origin::user).text.size(), 100U);
-  EXPECT_EQ(kind("/proc/self/status", Origin::user, 100), Kind::too_large);
+  EXPECT_GT(read_bounded("/proc/self/status", 100'000, FileOrigin::user).text.size(), 100U);
+  EXPECT_EQ(kind("/proc/self/status", FileOrigin::user, 100), Kind::too_large);
 }
 
 TEST_F(AReading, ReturnsAtOnceWhatIsNoFile) {
   const fs::path pipe = folder_.path() / "pipe";
   ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
-  for (const Origin origin : {Origin::user, Origin::record}) {
+  for (const FileOrigin origin : {FileOrigin::user, FileOrigin::record}) {
     EXPECT_EQ(kind(pipe, origin), Kind::not_regular);
     EXPECT_EQ(kind("/dev/zero", origin), Kind::not_regular);
     EXPECT_EQ(kind(folder_.path(), origin), Kind::not_regular);
@@ -71,9 +71,9 @@ TEST_F(AReading, FollowsLinksOfTheUserAndNoneInARecord) {
   fs::create_symlink(file, folder_.path() / "link");
   fs::create_directory_symlink(file.parent_path(), folder_.path() / "jobs/ba9876543210");
   fs::create_symlink("/dev/zero", folder_.path() / "zero");
-  EXPECT_EQ(kind(folder_.path() / "link", Origin::user), Kind::whole);
+  EXPECT_EQ(kind(folder_.path() / "link", FileOrigin::user), Kind::whole);
   EXPECT_EQ(kind(folder_.path() / "link"), Kind::link);
-  EXPECT_EQ(kind(folder_.path() / "zero", Origin::user), Kind::not_regular);
+  EXPECT_EQ(kind(folder_.path() / "zero", FileOrigin::user), Kind::not_regular);
   EXPECT_EQ(kind(folder_.path() / "zero"), Kind::link);
   EXPECT_EQ(kind(file), Kind::whole);
   EXPECT_EQ(kind(folder_.path() / "jobs/ba9876543210/x"), Kind::link) << "the folder of a job";
@@ -85,7 +85,7 @@ TEST_F(AReading, FollowsLinksOfTheUserAndNoneInARecord) {
 }
 
 TEST_F(AReading, IsToldOfInWords) {
-  EXPECT_EQ(words_of(read_bounded(folder_.write("x", "12345"), 4, Origin::record), 4).reason,
+  EXPECT_EQ(words_of(read_bounded(folder_.write("x", "12345"), 4, FileOrigin::record), 4).reason,
             "is too large for its purpose: at most 4 bytes are read");
   EXPECT_EQ(words_of({Kind::too_large, {}}, 512 << 20).reason,
             "is too large for its purpose: at most 512 MiB are read");

@@ -44,7 +44,7 @@ constexpr std::array<double, kPhases> kTook{0.5, 0.0, 0.25, 0.125, 0.0625};
 /// Begins or carries on a run of so many taps, as a process does that may be killed at any time.
 void carry_on(const fs::path& directory, bool announces, int taps) {
   RunDirectory run(directory);
-  if (run.before().end && run.before().end->how == Ending::How::done) return;
+  if (run.before().end && run.before().end->how == Ending::EndKind::done) return;
   if (!run.before().manifest) run.begin(Tree::map({{"build", Tree::quote("b")}}));
   run.begin_attempt("b", false);
   run.set_up(announces, Tree::map());
@@ -60,7 +60,7 @@ void carry_on(const fs::path& directory, bool announces, int taps) {
   Row summary;
   summary.add("status", "done");
   summary.add("taps", std::int64_t{taps});
-  run.end({Ending::How::done, "tap budget", summary, {}});
+  run.end({Ending::EndKind::done, "tap budget", summary, {}});
 }
 
 class Record : public InFolder {
@@ -127,7 +127,7 @@ TEST_F(Record, ThatIsSoundHasEachOfItsParts) {
   EXPECT_EQ(record.timings[1].tap, 2);
   EXPECT_EQ(record.timings[1].seconds[0], 2.0);
   EXPECT_EQ(record.objects.at(0).text("type"), "cube");
-  EXPECT_EQ(record.end->how, Ending::How::done);
+  EXPECT_EQ(record.end->how, Ending::EndKind::done);
   EXPECT_EQ(record.end->summary.number("taps"), 2.0);
 }
 
@@ -332,7 +332,7 @@ TEST_F(Record, ThatIsCutAnywhereIsReadAndCarriedOnToTheSameTaps) {
       carry_on(run(), announces, 2);
       const RunRecord after = read_run_record(run());
       ASSERT_EQ(after.taps.size(), 2U) << cut;
-      EXPECT_EQ(after.end->how, Ending::How::done) << cut;
+      EXPECT_EQ(after.end->how, Ending::EndKind::done) << cut;
       std::string expected = taps;
       // Nobody saw the end of a tap that was announced.
       for (std::size_t i = 0; announces && i < 2; ++i) {

@@ -38,8 +38,8 @@ class Reductions : public testing::Test {
     some = representatives(places, 60).places;
   }
 
-  static SolidsSettings few() {
-    SolidsSettings out;
+  static AssemblySamplerSettings few() {
+    AssemblySamplerSettings out;
     out.count = 6;
     out.moves = 150;
     return out;
@@ -63,9 +63,9 @@ class Reductions : public testing::Test {
   }
   /// The covariance of what is off, contacts first, as reduction.hpp has it.
   MatrixXd covariance(const ResidualGp::Places& at) const {
-    std::vector<ResidualGp::Row> rows(at.size());
+    std::vector<ResidualGp::ResidualDatum> rows(at.size());
     std::transform(at.begin(), at.end(), rows.begin(),
-                   [](const ResidualGp::Place& one) { return ResidualGp::Row{one}; });
+                   [](const ResidualGp::Place& one) { return ResidualGp::ResidualDatum{one}; });
     MatrixXd out = residual_gp.covariance(rows);
     for (const Assembly& one : solids.assemblies()) {
       for (Eigen::Index i = 0; i < out.rows(); ++i) {
@@ -80,7 +80,7 @@ class Reductions : public testing::Test {
   }
   ResidualGp::Places contacts() const {
     ResidualGp::Places out;
-    for (const ResidualGp::Row& row : residual_gp.rows()) {
+    for (const ResidualGp::ResidualDatum& row : residual_gp.rows()) {
       if (!row.free) out.push_back(row.place);
     }
     return out;
@@ -102,7 +102,7 @@ class Reductions : public testing::Test {
   }
 
   const Primitive box{Primitive::Form::box, {0.13, 0.13, 0.03}, Eigen::Matrix3d::Identity(), {0.05, 0.03, 0.03}, 0.0};
-  Solids solids{{0.26, 0.26}, few(), Random(9, "solids")};
+  AssemblySampler solids{{0.26, 0.26}, few(), Random(9, "solids")};
   ResidualGp residual_gp;
   std::vector<SurfaceTouch> all;
   ResidualGp::Places places, some;

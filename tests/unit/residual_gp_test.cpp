@@ -333,7 +333,7 @@ TEST(ResidualGpOfHardData, WhereTheKernelIsNotPositiveDefiniteRowsAreSetAsideAnd
   residual_gp.fit(solids, touches);
   EXPECT_FALSE(residual_gp.free_paths().points.empty());
   std::size_t contacts = 0;
-  for (const ResidualGp::Row& row : residual_gp.rows()) contacts += row.free ? 0 : 1;
+  for (const ResidualGp::ResidualDatum& row : residual_gp.rows()) contacts += row.free ? 0 : 1;
   EXPECT_GE(static_cast<std::size_t>(residual_gp.report().redundant_taps), 60 - contacts);
   EXPECT_GT(residual_gp.report().pivoted, 0);
   EXPECT_GT(residual_gp.report().redundant_taps, 0);
@@ -350,7 +350,7 @@ TEST(ResidualGpOfHardData, FreeWaysTakeNothingFromContactsWhereTheKernelIsNotPos
   ResidualGp residual_gp(kernel_of_no_covariance(), {0.006, 0.0});
   const auto contacts = [&] {
     return std::count_if(residual_gp.rows().begin(), residual_gp.rows().end(),
-                         [](const ResidualGp::Row& row) { return !row.free; });
+                         [](const ResidualGp::ResidualDatum& row) { return !row.free; });
   };
   residual_gp.fit(solids, touches);
   const auto before = contacts();

@@ -89,7 +89,7 @@ void expect_nothing_is_written(RunDirectory& run, const std::string& words) {
   EXPECT_THAT(words_of([&] { run.set_up(true, Tree::map()); }), StartsWith(words));
   EXPECT_THAT(words_of([&] { run.note_learnt("a", "b"); }), StartsWith(words));
   EXPECT_THAT(words_of([&] { run.write_objects({Row()}); }), StartsWith(words));
-  EXPECT_THAT(words_of([&] { run.end({Ending::How::done, "", {}, {}}); }), StartsWith(words));
+  EXPECT_THAT(words_of([&] { run.end({Ending::EndKind::done, "", {}, {}}); }), StartsWith(words));
   EXPECT_THAT(words_of([&] { run.write_made("taps.csv", ""); }), StartsWith(words));
 }
 
@@ -216,7 +216,7 @@ TEST_F(RunFolder, TellsItsStateFromItsRecordAlone) {
     EXPECT_EQ(run.recover().size(), 3U);
     Row summary;
     summary.add("taps", 3);
-    run.end({Ending::How::done, "tap budget", summary, {}});
+    run.end({Ending::EndKind::done, "tap budget", summary, {}});
   }
   EXPECT_EQ(read_status(directory).state, RunStatus::State::done);
   EXPECT_FALSE(lacks_files(directory, *read_ending(directory).end));
@@ -242,7 +242,7 @@ TEST_F(RunFolder, CanBeEndedAsFailedAtAnyTime) {
     EXPECT_EQ(read_run_record(directory).is_failure_alone(), steps < 2);
     RunDirectory(directory).fail("the second time");
     const RunRecord record = read_run_record(directory);
-    EXPECT_EQ(record.end->how, Ending::How::failed) << steps;
+    EXPECT_EQ(record.end->how, Ending::EndKind::failed) << steps;
     EXPECT_EQ(record.end->summary.text("stop_reason"), "the second time");
     EXPECT_EQ(record.intent.has_value(), steps > 3);
   }

@@ -21,7 +21,7 @@ double metres_in(const std::string& unit) {
   return 1e-6;
 }
 
-TEST(Scale, OneUnitPerQuantity) {
+TEST(DisplayScale, OneUnitPerQuantity) {
   EXPECT_EQ(readable_scale(Unit::metre, {0.0402, 0.0026}).unit, "mm");
   EXPECT_EQ(readable_scale(Unit::metre, {0.11, 0.0}, 3, LengthKind::place).unit, "cm");
   EXPECT_EQ(usual_scale(Unit::metre).unit, "mm");
@@ -30,14 +30,14 @@ TEST(Scale, OneUnitPerQuantity) {
   EXPECT_EQ(readable_scale(Unit::none, {0.99}).unit, "");
 }
 
-TEST(Scale, NoLengthHasManyDigitsOrReadsAsNothing) {
+TEST(DisplayScale, NoLengthHasManyDigitsOrReadsAsNothing) {
   std::mt19937 random(1);
   std::uniform_real_distribution<double> power(-8.5, 1.5);
   for (int i = 0; i < 2000; ++i) {
     const double value = std::pow(10.0, power(random)) * (i % 2 == 0 ? 1.0 : -1.0);
     for (const LengthKind kind : {LengthKind::error, LengthKind::place}) {
-      const Scale column = readable_scale(Unit::metre, {value}, 3, kind);
-      const Scale live = usual_scale(Unit::metre, kind);
+      const DisplayScale column = readable_scale(Unit::metre, {value}, 3, kind);
+      const DisplayScale live = usual_scale(Unit::metre, kind);
       const std::string alone = readable(value, Unit::metre, 3, kind);
       const std::string unit = alone.substr(alone.find(' ') + 1);
       // Half a unit of the third digit, or of the second where a table began with another size.
@@ -50,7 +50,7 @@ TEST(Scale, NoLengthHasManyDigitsOrReadsAsNothing) {
   }
 }
 
-TEST(Scale, MicronsAreNotZeroInATableThatBeganWithCentimetres) {
+TEST(DisplayScale, MicronsAreNotZeroInATableThatBeganWithCentimetres) {
   EXPECT_EQ(usual_scale(Unit::metre).number(0.04023), "40.2");
   EXPECT_EQ(usual_scale(Unit::metre).number(3.24e-6), "0.0032");
   EXPECT_EQ(usual_scale(Unit::metre, LengthKind::place).number(4e-6), "0.00040");
@@ -59,8 +59,8 @@ TEST(Scale, MicronsAreNotZeroInATableThatBeganWithCentimetres) {
   EXPECT_EQ(usual_scale(Unit::metre).number(std::nullopt), "-");
 }
 
-TEST(Scale, AColumnHasTheDecimalsOfItsSmallestNumberAndFourAtMost) {
-  const Scale column = readable_scale(Unit::metre, {0.0402, 0.0026});
+TEST(DisplayScale, AColumnHasTheDecimalsOfItsSmallestNumberAndFourAtMost) {
+  const DisplayScale column = readable_scale(Unit::metre, {0.0402, 0.0026});
   EXPECT_EQ(column.number(0.0402), "40.20");
   EXPECT_EQ(column.number(0.0026), "2.60");
   EXPECT_EQ(readable_scale(Unit::none, {30.0, 1e-7}).decimals, 4);
@@ -69,7 +69,7 @@ TEST(Scale, AColumnHasTheDecimalsOfItsSmallestNumberAndFourAtMost) {
   EXPECT_EQ(readable_scale(Unit::metre, {1.5650845800732873e-2}).quantity(1.5650845800732873e-2), "15.7 mm");
 }
 
-TEST(Scale, NumbersWithoutAUnitKeepTheirDigitsHoweverSmall) {
+TEST(DisplayScale, NumbersWithoutAUnitKeepTheirDigitsHoweverSmall) {
   EXPECT_EQ(readable_scale(Unit::none, {1.234e-10}).number(1.234e-10), "1.23e-10");
   EXPECT_EQ(readable_scale(Unit::none, {1.234e-10}).number(0.0), "0");
   EXPECT_EQ(readable_scale(Unit::none, {2e12}).number(2e12), "2.00e+12");
@@ -79,7 +79,7 @@ TEST(Scale, NumbersWithoutAUnitKeepTheirDigitsHoweverSmall) {
   EXPECT_EQ(significant(-0.0), "0");
 }
 
-TEST(Scale, LargerAndSmallerUnitsOnlyWhereTheUsualOneCannotBeRead) {
+TEST(DisplayScale, LargerAndSmallerUnitsOnlyWhereTheUsualOneCannotBeRead) {
   EXPECT_EQ(readable(0.017, Unit::metre, 4, LengthKind::place), "1.7 cm");
   EXPECT_EQ(readable(1e-4, Unit::metre, 4, LengthKind::place), "0.1 mm");
   EXPECT_EQ(readable(3.2e-6, Unit::metre), "3.2 um");
@@ -91,7 +91,7 @@ TEST(Scale, LargerAndSmallerUnitsOnlyWhereTheUsualOneCannotBeRead) {
   EXPECT_EQ(readable(90.0, Unit::second), "90 s");
 }
 
-TEST(Scale, WhatIsNotFiniteSaysSo) {
+TEST(DisplayScale, WhatIsNotFiniteSaysSo) {
   EXPECT_EQ(usual_scale(Unit::metre).number(std::numeric_limits<double>::infinity()), "inf");
   EXPECT_EQ(readable(std::nan(""), Unit::none), "nan");
   EXPECT_EQ(readable_scale(Unit::metre, {std::numeric_limits<double>::infinity(), 0.002}).number(0.002), "2.00");

@@ -275,9 +275,9 @@ TEST(Simulator, RefusesAnObjectAsHighAsItTravels) {
               testing::HasSubstr("motion.hover"));
 }
 
-TEST(Arm, TrailsARampByItsDelayTimesTheSpeed) {
+TEST(SimulatedAxis, TrailsARampByItsDelayTimesTheSpeed) {
   for (const double overshoot : {0.0, 0.05, 0.3}) {
-    backends::Arm arm(JointLag{0.35, overshoot}, 0.01, 0.1);
+    backends::SimulatedAxis arm(JointLag{0.35, overshoot}, 0.01, 0.1);
     double set_point = 0.1;
     for (int i = 0; i < 1000; ++i) arm.follow(set_point -= 0.0003);
     // The set-point stands still during a period, on average half a period behind its ramp.
@@ -285,9 +285,9 @@ TEST(Arm, TrailsARampByItsDelayTimesTheSpeed) {
   }
 }
 
-TEST(Arm, OvershootsAStepByItsShareAndNotAtAllByDefault) {
+TEST(SimulatedAxis, OvershootsAStepByItsShareAndNotAtAllByDefault) {
   for (const double overshoot : {0.0, 0.05, 0.3}) {
-    backends::Arm arm(JointLag{0.35, overshoot}, 0.001, 0.0);
+    backends::SimulatedAxis arm(JointLag{0.35, overshoot}, 0.001, 0.0);
     double highest = 0.0;
     for (int i = 0; i < 20000; ++i) {
       arm.follow(1.0);
@@ -298,10 +298,10 @@ TEST(Arm, OvershootsAStepByItsShareAndNotAtAllByDefault) {
   }
 }
 
-TEST(Arm, FollowsTheSamePathAtAnyPeriod) {
+TEST(SimulatedAxis, FollowsTheSamePathAtAnyPeriod) {
   // Exact for a constant set-point: ten short periods are one long one. An integrator of small steps agrees.
-  backends::Arm coarse(JointLag{0.35, 0.2}, 0.1, 0.0);
-  backends::Arm fine(JointLag{0.35, 0.2}, 0.01, 0.0);
+  backends::SimulatedAxis coarse(JointLag{0.35, 0.2}, 0.1, 0.0);
+  backends::SimulatedAxis fine(JointLag{0.35, 0.2}, 0.01, 0.0);
   const double log_share = std::log(0.2);
   constexpr double kHalfTurn = 3.14159265358979323846;
   const double zeta = -log_share / std::hypot(kHalfTurn, log_share);

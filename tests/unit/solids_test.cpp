@@ -21,12 +21,12 @@ using Eigen::Vector3d;
 const Primitive kStanding{
     Primitive::Form::box, {0.13, 0.13, 0.03}, Eigen::Matrix3d::Identity(), {0.05, 0.03, 0.03}, 0.0};
 
-TEST(Solids, FindABoxFromTouchesOfIt) {
+TEST(AssemblySampler, FindABoxFromTouchesOfIt) {
   Random random(7, "test/solids");
-  SolidsSettings settings;
+  AssemblySamplerSettings settings;
   settings.count = 12;
   settings.moves = 200;
-  Solids solids({0.26, 0.26}, settings, Random(7, "solids"));
+  AssemblySampler solids({0.26, 0.26}, settings, Random(7, "solids"));
   for (int i = 0; i < 60; ++i) {
     Vector3d direction = random_direction(random);
     direction.z() = -std::abs(direction.z());
@@ -38,7 +38,7 @@ TEST(Solids, FindABoxFromTouchesOfIt) {
   }
   const Assembly& best = solids.best();
   EXPECT_TRUE(std::isfinite(best.posterior()));
-  const Bundle bundle(kStanding.centre, 0.12, 60, 0.01);
+  const LineBundle bundle(kStanding.centre, 0.12, 60, 0.01);
   Cloud truth, believed;
   for (const Line& line : bundle.lines) {
     const double desk = line.direction.z() < 0 ? -line.origin.z() / line.direction.z() : kNoHit;
@@ -66,15 +66,15 @@ std::vector<SurfaceTouch> seen(const Primitive& primitive) {
   return out;
 }
 
-TEST(Solids, KnowABowlThatWasSeenFromOneSideWhateverModeCameFirst) {
+TEST(AssemblySampler, KnowABowlThatWasSeenFromOneSideWhateverModeCameFirst) {
   const Primitive bowl{
       Primitive::Form::ellipsoid, {0.13, 0.13, 0.07}, Eigen::Matrix3d::Identity(), {0.08, 0.08, 0.07}, 0.004};
-  SolidsSettings settings;
+  AssemblySamplerSettings settings;
   settings.count = 8;
   int hollow = 0;
   const int seeds = test::brief() ? 1 : 4;
   for (int seed = 1; seed <= seeds; ++seed) {
-    Solids solids({0.26, 0.26}, settings, Random(static_cast<std::uint64_t>(seed), "solids"));
+    AssemblySampler solids({0.26, 0.26}, settings, Random(static_cast<std::uint64_t>(seed), "solids"));
     solids.look(seen(bowl));
     const Assembly& best = solids.best();
     hollow += std::abs(best.distance({0.13, 0.13, 0.002})) < 0.008 && best.distance({0.13, 0.13, 0.05}) > 0.02 ? 1 : 0;
@@ -82,11 +82,11 @@ TEST(Solids, KnowABowlThatWasSeenFromOneSideWhateverModeCameFirst) {
   EXPECT_GE(hollow, seeds == 1 ? 1 : seeds - 1) << "the rest may have stayed in a mode that is wrong";
 }
 
-TEST(Solids, HaveNothingUnseenWhereATouchHasBeen) {
-  SolidsSettings settings;
+TEST(AssemblySampler, HaveNothingUnseenWhereATouchHasBeen) {
+  AssemblySamplerSettings settings;
   settings.count = 4;
   settings.moves = 100;
-  Solids solids({0.26, 0.26}, settings, Random(9, "solids"));
+  AssemblySampler solids({0.26, 0.26}, settings, Random(9, "solids"));
   Random random(9, "test/unseen");
   std::vector<SurfaceTouch> touches;
   std::size_t before = 300;
@@ -113,12 +113,12 @@ TEST(Solids, HaveNothingUnseenWhereATouchHasBeen) {
   }
 }
 
-TEST(Solids, KeepWhatTheySumUpTrueThroughAllMoves) {
+TEST(AssemblySampler, KeepWhatTheySumUpTrueThroughAllMoves) {
   Random random(8, "test/solids");
-  SolidsSettings settings;
+  AssemblySamplerSettings settings;
   settings.count = 6;
   settings.moves = 200;
-  Solids solids({0.26, 0.26}, settings, Random(8, "solids"));
+  AssemblySampler solids({0.26, 0.26}, settings, Random(8, "solids"));
   std::vector<SurfaceTouch> touches;
   for (int i = 0; i < 15; ++i) {
     const Vector3d out = random_direction(random);
@@ -165,27 +165,27 @@ std::vector<SurfaceTouch> touches_of(int count) {
   return out;
 }
 
-TEST(Solids, GoOnWhereNoAssemblyIsPossibleAtAll) {
-  SolidsSettings settings;
+TEST(AssemblySampler, GoOnWhereNoAssemblyIsPossibleAtAll) {
+  AssemblySamplerSettings settings;
   settings.count = 4;
   settings.moves = 20;
   settings.misfit = 1e-200;
-  Solids solids({0.26, 0.26}, settings, Random(7, "solids"));
+  AssemblySampler solids({0.26, 0.26}, settings, Random(7, "solids"));
   for (const SurfaceTouch& touch : touches_of(5)) solids.add({touch});
   EXPECT_EQ(solids.assemblies().size(), 4U);
   EXPECT_THROW(shipped_config("any_side.yaml", {"belief.model_discrepancy=1e-200m"}), Error);
 }
 
-TEST(Solids, MakeNoPrimitiveOfOneContactInTheAirWhereATouchMayBeALie) {
+TEST(AssemblySampler, MakeNoPrimitiveOfOneContactInTheAirWhereATouchMayBeALie) {
   const Vector3d air(0.15, 0.14, 0.16);
   int made = 0, made_of_lies = 0;
   for (const double most : {kNoHit, 5.5}) {
     for (const std::uint64_t seed : {1, 2, 3, 4}) {
-      SolidsSettings settings;
+      AssemblySamplerSettings settings;
       settings.count = 8;
       settings.moves = 300;
       settings.most = most;
-      Solids solids({0.26, 0.26}, settings, Random(seed, "solids"));
+      AssemblySampler solids({0.26, 0.26}, settings, Random(seed, "solids"));
       std::vector<SurfaceTouch> touches = touches_of(30);
       touches.insert(touches.begin() + 15, {{air + Vector3d(0, 0, 0.1), -Vector3d::UnitZ()}, 0.1, true, false});
       for (const SurfaceTouch& touch : touches) solids.add({touch});
@@ -196,11 +196,11 @@ TEST(Solids, MakeNoPrimitiveOfOneContactInTheAirWhereATouchMayBeALie) {
   EXPECT_LE(made, 1);
 }
 
-TEST(Solids, AreWeighedByTouchesAsTheyAreReadNow) {
-  SolidsSettings settings;
+TEST(AssemblySampler, AreWeighedByTouchesAsTheyAreReadNow) {
+  AssemblySamplerSettings settings;
   settings.count = 6;
   settings.moves = 100;
-  Solids solids({0.26, 0.26}, settings, Random(7, "solids"));
+  AssemblySampler solids({0.26, 0.26}, settings, Random(7, "solids"));
   std::vector<SurfaceTouch> touches = touches_of(12);
   for (const SurfaceTouch& touch : touches) solids.add({touch});
   for (SurfaceTouch& touch : touches) touch.length -= 0.004;

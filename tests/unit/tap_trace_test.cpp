@@ -21,7 +21,7 @@ struct Replay {
 
 Replay replay(const test::TapTrace& trace) {
   const auto motion = test::filled<MotionOptions>(trace.motion);
-  Replay out{GuardedTap(motion, plan_descent(motion, 0.0, {}), GuardedTap::Arm::real)};
+  Replay out{GuardedTap(motion, plan_descent(motion, 0.0, {}), GuardedTap::ArmKind::real)};
   for (const test::TapTrace::Row& row : trace.rows) {
     if (out.tap.done()) break;
     const int before = out.tap.noticed();

@@ -68,9 +68,9 @@ RateMeans means_by_draws(const Prior& prior, std::size_t taps, double noise, int
   return out;
 }
 
-Undiscovered undiscovered_after(const Prior& prior, std::size_t taps, double noise, std::uint64_t seed) {
+UndiscoveredPrimitives undiscovered_after(const Prior& prior, std::size_t taps, double noise, std::uint64_t seed) {
   Random random(seed, "undiscovered test");
-  Undiscovered out(prior, random);
+  UndiscoveredPrimitives out(prior, random);
   const LabelModel labels(kLabelError, kFalseContact, noise);
   for (std::size_t k = 0; k < taps; ++k) out.add(kTouches[k], labels);
   return out;
@@ -85,7 +85,7 @@ void PrintTo(const UndiscoveredCase& one, std::ostream* out) { *out << one.name;
 
 /// The expected sum of `counts` over all primitives.
 template <class Counts>
-double sum_over(const Undiscovered& undiscovered, const Counts& counts) {
+double sum_over(const UndiscoveredPrimitives& undiscovered, const Counts& counts) {
   double out = 0.0;
   undiscovered.for_each([&](const Primitive& primitive, double expected) { out += expected * counts(primitive); });
   return out;
@@ -106,7 +106,7 @@ TEST_P(UndiscoveredAfter, HasTheRatesOfWeighedDrawsOfThePrior) {
   const int seeds = test::brief() ? 3 : 20;
   Numbers mean{};
   for (int seed = 0; seed < seeds; ++seed) {
-    const Undiscovered undiscovered =
+    const UndiscoveredPrimitives undiscovered =
         undiscovered_after(prior, GetParam().touches, GetParam().noise, static_cast<std::uint64_t>(seed));
     for (std::size_t k = 0; k < kRatePositions.size(); ++k)
       mean[k] += undiscovered.covering(kRatePositions[k]).rate() / seeds;
@@ -123,11 +123,11 @@ TEST_P(UndiscoveredAfter, HasTheRatesOfWeighedDrawsOfThePrior) {
   EXPECT_GT(mean[10], 0.1) << "many long primitives are apart";
 }
 
-TEST(Undiscovered, ContainsNoObjectTapAndBecomesRarerAroundTapsOfTheDesk) {
+TEST(UndiscoveredPrimitives, ContainsNoObjectTapAndBecomesRarerAroundTapsOfTheDesk) {
   const Prior prior(default_prior(3.0));
   for (const double noise : {0.0, 0.005}) {
     Random random(2, "undiscovered test");
-    Undiscovered undiscovered(prior, random);
+    UndiscoveredPrimitives undiscovered(prior, random);
     const LabelModel labels(kLabelError, kFalseContact, noise);
     std::vector<double> before;
     const Points places = test::scattered(60);
@@ -155,12 +155,12 @@ TEST(Undiscovered, ContainsNoObjectTapAndBecomesRarerAroundTapsOfTheDesk) {
   }
 }
 
-TEST(Undiscovered, IsDrawnAtAPositionInProportionToItsWeight) {
+TEST(UndiscoveredPrimitives, IsDrawnAtAPositionInProportionToItsWeight) {
   const Prior prior(default_prior(3.0));
-  const Undiscovered undiscovered = undiscovered_after(prior, kTouches.size(), 0.0, 3);
+  const UndiscoveredPrimitives undiscovered = undiscovered_after(prior, kTouches.size(), 0.0, 3);
   Random random(4, "undiscovered test: draws");
   const Target& at = kRatePositions[5];
-  const Undiscovered::Covering here = undiscovered.covering(at);
+  const UndiscoveredPrimitives::CoveringDraws here = undiscovered.covering(at);
   constexpr int kDraws = 4000;
   Numbers drawn{};
   for (int i = 0; i < kDraws; ++i) {
@@ -179,17 +179,17 @@ TEST(Undiscovered, IsDrawnAtAPositionInProportionToItsWeight) {
   }
 }
 
-TEST(Undiscovered, IsDrawnAsAPoissonProcess) {
+TEST(UndiscoveredPrimitives, IsDrawnAsAPoissonProcess) {
   const Prior prior(default_prior(3.0));
   const int draws = test::brief() ? 2000 : 30000;
   for (const std::size_t touches : {0, 6}) {
-    const Undiscovered undiscovered = undiscovered_after(prior, touches, 0.0, 5);
+    const UndiscoveredPrimitives undiscovered = undiscovered_after(prior, touches, 0.0, 5);
     const double mean = sum_over(undiscovered, [](const Primitive&) { return 1.0; });
     Random random(6, "undiscovered test: draws");
     std::vector<std::size_t> sizes(static_cast<std::size_t>(draws), 0);
     std::vector<std::size_t> here(static_cast<std::size_t>(draws), 0);  // those that contain one position
     Numbers drawn{};
-    for (const Undiscovered::Member& one : undiscovered.draw(draws, random)) {
+    for (const UndiscoveredPrimitives::Member& one : undiscovered.draw(draws, random)) {
       const Primitive& primitive = *one.primitive;
       ++sizes[static_cast<std::size_t>(one.set)];
       here[static_cast<std::size_t>(one.set)] += holds(primitive, kRatePositions[7]) ? 1U : 0U;
@@ -216,10 +216,10 @@ TEST(Undiscovered, IsDrawnAsAPoissonProcess) {
   }
 }
 
-TEST(Undiscovered, HasTheSameRatesOnALatticeAsAtSinglePositions) {
+TEST(UndiscoveredPrimitives, HasTheSameRatesOnALatticeAsAtSinglePositions) {
   const Prior prior(default_prior(3.0));
   for (const std::size_t touches : {0, 1, 6}) {
-    Undiscovered undiscovered = undiscovered_after(prior, touches, 0.004, 9);
+    UndiscoveredPrimitives undiscovered = undiscovered_after(prior, touches, 0.004, 9);
     for (const Points& places :
          {test::lattice(41, 37), test::lattice(31, 7), test::lattice(1, 40), test::lattice(40, 1), test::lattice(1, 1),
           test::scattered(50), test::doubled(test::scattered(5), 0.0)}) {

@@ -238,7 +238,7 @@ TEST_F(SeenHalf, IsKnownToEveryModelBeforeTheFirstTap) {
   for (const std::string strategy : {"default", "weighted", "uncertainty", "weighted_two_part"}) {
     Prepared prepared("default.yaml", {"strategy=" + strategy, "backend=simulator", words(1, 5).front(), "taps=5"});
     prepared.read({quantity::kUncertainty, quantity::kObjectProbability, quantity::kHeightMean});
-    const HeightMap& belief = prepared.belief();
+    const HeightMapBelief& belief = prepared.belief();
     double near = 0.0;
     double far = 0.0;
     for (int i = 0; i < prepared.grid().size(); ++i)

@@ -98,14 +98,14 @@ TEST(Cubes, OfPrimitivesSideBySideHaveWhatTheResidualGpAddsToEach) {
 
 TEST(Scene, TellsWhichPartsOfALineLieInItsObjectsAlsoWhereTheyOverlap) {
   const auto scene = scene_of_cup();
-  const std::vector<Stretch> across = scene->intervals({{0.0, 0.13, 0.05}, {1.0, 0.0, 0.0}});
+  const std::vector<LineInterval> across = scene->intervals({{0.0, 0.13, 0.05}, {1.0, 0.0, 0.0}});
   ASSERT_EQ(across.size(), 2U);
   EXPECT_NEAR(across[0].begin, 0.09, 1e-12);
   EXPECT_NEAR(across[0].end, 0.10, 1e-12);
   EXPECT_NEAR(across[1].begin, 0.16, 1e-12);
   EXPECT_NEAR(across[1].end, 0.17, 1e-12);
   EXPECT_TRUE(scene->intervals({{0.0, 0.13, 0.09}, {1.0, 0.0, 0.0}}).empty());
-  const std::vector<Stretch> all = joined({{0.3, 0.4}, {0.0, 0.1}, {0.05, 0.2}, {0.1, 0.12}});
+  const std::vector<LineInterval> all = joined({{0.3, 0.4}, {0.0, 0.1}, {0.05, 0.2}, {0.1, 0.12}});
   ASSERT_EQ(all.size(), 2U);
   EXPECT_EQ(all[0].end, 0.2);
   EXPECT_EQ(all[1].begin, 0.3);

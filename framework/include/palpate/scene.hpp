@@ -42,7 +42,7 @@ class Scene {
 
   /// Returns the intervals of the line inside of objects, in ascending order. Hollow space does not count. See
   /// Shape::intervals().
-  virtual std::vector<Stretch> intervals(const Line& line) const = 0;
+  virtual std::vector<LineInterval> intervals(const Line& line) const = 0;
 
   /// Returns an upper bound of `height` over the plane, metres.
   virtual double highest() const = 0;

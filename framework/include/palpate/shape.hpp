@@ -12,16 +12,17 @@
 namespace palpate {
 
 /// Interval on a line: distances of its two ends from the line's origin, metres.
-struct Stretch {
+struct LineInterval {
   double begin = 0.0;
   double end = 0.0;
 };
 
 /// Returns the union of `intervals` as disjoint intervals in ascending order.
-inline std::vector<Stretch> joined(std::vector<Stretch> intervals) {
-  std::sort(intervals.begin(), intervals.end(), [](const Stretch& a, const Stretch& b) { return a.begin < b.begin; });
-  std::vector<Stretch> out;
-  for (const Stretch& stretch : intervals) {
+inline std::vector<LineInterval> joined(std::vector<LineInterval> intervals) {
+  std::sort(intervals.begin(), intervals.end(),
+            [](const LineInterval& a, const LineInterval& b) { return a.begin < b.begin; });
+  std::vector<LineInterval> out;
+  for (const LineInterval& stretch : intervals) {
     if (out.empty() || stretch.begin > out.back().end) {
       out.push_back(stretch);
     } else {
@@ -63,10 +64,10 @@ class Shape {
   /// default is correct for convex solids; other shapes override it. Used only to compare volumes and to draw sections.
   /// Laws: the first interval begins at first_intersection(), and the last interval ends where the reversed line first
   /// meets the solid; whether a point is inside does not depend on the line through it.
-  virtual std::vector<Stretch> intervals(const Line& line) const {
+  virtual std::vector<LineInterval> intervals(const Line& line) const {
     const double begin = first_intersection(line);
     const double end = -first_intersection({line.origin, -line.direction});
-    return begin < end ? std::vector<Stretch>{{begin, end}} : std::vector<Stretch>{};
+    return begin < end ? std::vector<LineInterval>{{begin, end}} : std::vector<LineInterval>{};
   }
 };
 

@@ -222,8 +222,8 @@ struct CurveClauses {
 /// The drawn curves, with the units and axes that all panels share.
 struct DrawnCurves {
   std::vector<const GroupCurve*> curves;
-  Scale axis;
-  Scale value;
+  DisplayScale axis;
+  DisplayScale value;
   AxisRange x;
   AxisRange y;
 };
@@ -242,8 +242,8 @@ DrawnCurves drawn_curves(const GroupCurves& curves, const PanelGrid& grid) {
     drawn.push_back(&curve);
     for (const CurvePoint& point : curve.points) places.push_back(point.at);
   }
-  const Scale axis = readable_scale(curves.against.unit, places);
-  const Scale value = metric_scale(curves);
+  const DisplayScale axis = readable_scale(curves.against.unit, places);
+  const DisplayScale value = metric_scale(curves);
   const auto [first, last] = std::minmax_element(places.begin(), places.end());
   return {drawn, axis, value, AxisRange(*first / axis.factor, *last / axis.factor), value_range(drawn, value.factor)};
 }

@@ -41,7 +41,7 @@ std::string axis(char name, double length) {
   return fill_template("map_axis", name, 100.0 * length, 100.0 * length > 12.0 ? "5" : "autofreq");
 }
 
-std::string colour_range(const Colours& colours) {
+std::string colour_range(const ColourScale& colours) {
   return gnuplot_palette(colours.palette) + fmt::format("set cbrange [{}:{}]\n{}", number(colours.low),
                                                         number(colours.high),
                                                         colours.logarithmic ? "set logscale cb\n" : "");
@@ -51,8 +51,8 @@ std::string colour_range(const Colours& colours) {
 int drawn(int count) { return std::clamp(count, 2, kMostDrawn); }
 
 /// Concatenates `cell`(candidate, column, row) over the drawn cells, with a line end after each row.
-template <class Cell>
-std::string rows_of(const SceneFrame& frame, const Cell& cell) {
+template <class CellText>
+std::string rows_of(const SceneFrame& frame, const CellText& cell) {
   const CandidateGrid& all = frame.candidates;
   std::string out;
   for (int row = 0; row < drawn(all.rows); ++row) {
@@ -231,7 +231,7 @@ std::string FigureLayout::marks(const std::string& taps, const std::string& colu
 }
 
 void FigureLayout::map(const Box& box, const SceneFrame& frame, const std::string& map, const std::string& taps,
-                       const Colours& colours) {
+                       const ColourScale& colours) {
   const Area& area = frame.area;
   std::string settings = axis('x', area.width) + axis('y', area.depth) + colour_range(colours) + fill_template("map");
   if (const std::string next = "next_" + taps; has(next)) {
@@ -242,7 +242,7 @@ void FigureLayout::map(const Box& box, const SceneFrame& frame, const std::strin
 }
 
 void FigureLayout::surface(const Box& box, const SceneFrame& frame, const std::string& surface, const std::string& taps,
-                           const Colours& colours, const ZRange& z_range) {
+                           const ColourScale& colours, const ZRange& z_range) {
   const Area& area = frame.area;
   const double wide = area.width * std::cos(kTurn) + area.depth * std::sin(kTurn);
   const double scale = std::min(box.width / wide, box.height / (z_range.above + z_range.below));  // pixels per metre
@@ -259,7 +259,7 @@ void FigureLayout::surface(const Box& box, const SceneFrame& frame, const std::s
   plot(inner, settings, fmt::format("splot ${} using 1:2:3:4 with pm3d", surface) + marks(taps, "1:2:3"));
 }
 
-void FigureLayout::bar(const Box& box, const Colours& colours) {
+void FigureLayout::bar(const Box& box, const ColourScale& colours) {
   std::string settings = gnuplot_palette(colours.palette) +
                          fill_template("colour_bar", kBarSteps - 0.5, number(colours.low), number(colours.high));
   if (colours.logarithmic) settings += "set logscale y2\n";

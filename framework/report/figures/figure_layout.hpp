@@ -88,12 +88,12 @@ class FigureLayout {
   /// Adds the block `map` as a map seen from above, with the taps `taps` on it. The box has the aspect ratio of the
   /// area.
   void map(const Box& box, const SceneFrame& frame, const std::string& map, const std::string& taps,
-           const Colours& colours);
+           const ColourScale& colours);
   /// Adds the block `surface` in three dimensions, with the taps `taps` on it. The surface is in the middle of the box.
   void surface(const Box& box, const SceneFrame& frame, const std::string& surface, const std::string& taps,
-               const Colours& colours, const ZRange& z_range);
+               const ColourScale& colours, const ZRange& z_range);
   /// Adds the colour bar.
-  void bar(const Box& box, const Colours& colours);
+  void bar(const Box& box, const ColourScale& colours);
   /// Adds the legend of the marks. The legend begins at `x`, and its vertical middle is at `y`.
   void legend(double x, double y, bool failed, bool next = true);
 

@@ -16,7 +16,7 @@ namespace palpate {
 namespace {
 
 /// States of one run for a figure that reproduces a figure of the paper (Sun and Min 2021, arXiv 2110.09593).
-struct Progress {
+struct RunSnapshots {
   std::string strategy;
   std::vector<int> iterations;
   std::vector<MapsAtTap> snapshots;  ///< one per iteration
@@ -26,7 +26,7 @@ struct Progress {
 /// A row of panels with one panel per snapshot of a run. The panels show surfaces from the side, or maps of the scores
 /// or of u.
 struct PanelRow {
-  const Progress& run;
+  const RunSnapshots& run;
   Eigen::VectorXd MapsAtTap::*map;
 };
 constexpr double kLeft = 70;    // pixels left of the first panel, for an axis
@@ -49,7 +49,7 @@ std::pair<double, double> extent(const PanelRow& row) {
 bool is_surface(const PanelRow& row) { return row.map == &MapsAtTap::surface; }
 bool is_scores(const PanelRow& row) { return row.map == &MapsAtTap::scores; }
 
-Colours colours_of(const PanelRow& row) {
+ColourScale colours_of(const PanelRow& row) {
   if (is_surface(row)) {
     const auto [least, most] = extent({row.run, &MapsAtTap::deviation});
     return deviation_colours(least, most);
@@ -67,7 +67,7 @@ std::string below_zero_words(const std::vector<PanelRow>& rows) {
 }
 
 /// Returns the suffix of the names of a panel's data blocks.
-std::string block_suffix(const Progress& progress, std::size_t column) {
+std::string block_suffix(const RunSnapshots& progress, std::size_t column) {
   std::string out = fmt::format("{}_{}", progress.strategy, progress.iterations[column]);
   const auto is_other = [](unsigned char c) { return std::isalnum(c) == 0; };
   std::replace_if(out.begin(), out.end(), is_other, '_');
@@ -78,8 +78,8 @@ double height_of(const PanelRow& row, const Box& map) { return is_surface(row) ?
 
 /// Draws the panels of a row below `top`, and their colour bar. `map` is the box of the first map.
 void draw_row(FigureLayout& layout, const PanelRow& row, double top, const Box& map) {
-  const Progress& run = row.run;
-  const Colours colours = colours_of(row);
+  const RunSnapshots& run = row.run;
+  const ColourScale colours = colours_of(row);
   const ZRange z_range = z_range_of(run.snapshots, run.frame);
   double left = map.left;
   for (std::size_t i = 0; i < run.snapshots.size(); ++i, left += kStep) {
@@ -106,8 +106,8 @@ void draw_row(FigureLayout& layout, const PanelRow& row, double top, const Box& 
 /// Returns the states of the run at these iterations of the paper. Iteration k of the paper is the state after the
 /// initial taps and k - 1 further taps. If the run ended before an iteration, the state after its last tap is shown
 /// instead, and all later iterations are left out.
-Progress progress_of(const RunEnvironment& environment, const RecordedRun& recording,
-                     const std::vector<int>& iterations) {
+RunSnapshots progress_of(const RunEnvironment& environment, const RecordedRun& recording,
+                         const std::vector<int>& iterations) {
   const int all = static_cast<int>(recording.taps.size());
   const auto initial =
       static_cast<int>(std::count_if(recording.taps.begin(), recording.taps.end(),
@@ -146,7 +146,7 @@ Figure panels_figure(const std::string& name, const std::string& title, const st
   layout.text(title, map.left, 14, 15);
   bool failed = false;
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    const Progress& run = rows[i].run;
+    const RunSnapshots& run = rows[i].run;
     for (std::size_t k = 0; begins_run(i) && k < columns; ++k) {
       const MapsAtTap& snapshot = run.snapshots[k];
       failed = failed || snapshot.result.failed_taps > 0;
@@ -163,7 +163,7 @@ Figure panels_figure(const std::string& name, const std::string& title, const st
 }
 
 /// Draws a row of surfaces, and below it a row of maps of the strategy's scores, as in figures 2 and 3 of the paper.
-Figure progress_figure(const std::string& name, const std::string& title, const Progress& progress) {
+Figure progress_figure(const std::string& name, const std::string& title, const RunSnapshots& progress) {
   return panels_figure(name, title, {{progress, &MapsAtTap::surface}, {progress, &MapsAtTap::scores}});
 }
 
@@ -195,7 +195,7 @@ struct PaperFigures {
 
   PaperFigures(const RunEnvironment& from, const Sweep& of) : environment(from), sweep(of) {}
 
-  Progress progress(const Job& job, const std::vector<int>& iterations) const {
+  RunSnapshots progress(const Job& job, const std::vector<int>& iterations) const {
     return progress_of(environment, read_recorded_run(environment.host, job_directory(sweep, job)), iterations);
   }
 
@@ -237,8 +237,8 @@ struct PaperFigures {
   }
 
   void add_comparison(const Job& uncertainty_job, const Job& weighted_job) {
-    const Progress above = progress(uncertainty_job, {1, 10, 16});
-    const Progress below = progress(weighted_job, {1, 10, 16});
+    const RunSnapshots above = progress(uncertainty_job, {1, 10, 16});
+    const RunSnapshots below = progress(weighted_job, {1, 10, 16});
     const auto add = [&](const char* name, const char* what, Eigen::VectorXd MapsAtTap::*map) {
       const std::string title = fmt::format("Object I on the right: {}", what);
       figures.push_back(
@@ -253,7 +253,7 @@ struct PaperFigures {
 
 Figures write_paper_figures(const RunEnvironment& environment, const RecordedRun& recording,
                             const std::filesystem::path& folder) {
-  const Progress progress = progress_of(environment, recording, {1, 8, 10, 14});
+  const RunSnapshots progress = progress_of(environment, recording, {1, 8, 10, 14});
   return {write_figures(folder, {progress_figure("paper_progress", recording.config.options.name, progress)}), {}};
 }
 

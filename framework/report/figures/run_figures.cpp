@@ -32,7 +32,7 @@ Figure surface_figure(const ExperimentOptions& options, const SceneFrame& frame,
   layout.text(map_titles(options).at("height") + " " + after_words(last) +
                   (behind > 0 ? fmt::format("; {} of them hidden behind it", behind) : ""),
               30, 44, 11);
-  const Colours colours = deviation_colours(last.deviation.minCoeff(), last.deviation.maxCoeff());
+  const ColourScale colours = deviation_colours(last.deviation.minCoeff(), last.deviation.maxCoeff());
   layout.surface({90, 80, 740, 510}, frame, "surface", "last", colours, z_range_of({last}, frame));
   layout.bar({880, 160, 18, 380}, colours);
   layout.legend(36, 670, last.result.failed_taps > 0, false);
@@ -87,7 +87,7 @@ Figure maps_figure(const ExperimentOptions& options, const SceneFrame& frame, co
   layout.taps("last", last);
   double left = first.left;
   for (const MapPanel& panel : panels) {
-    const Colours colours{panel.palette, 0.0, panel.high, ""};
+    const ColourScale colours{panel.palette, 0.0, panel.high, ""};
     layout.text(titles.at(panel.name) + panel.outside, left + 0.5 * first.width, kTop - 44, 11,
                 FigureLayout::Align::centre);
     layout.map({left, kTop, first.width, first.height}, frame, panel.name, "last", colours);

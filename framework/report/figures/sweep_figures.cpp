@@ -26,15 +26,15 @@ constexpr std::size_t kLongestName = 44;
 constexpr const char* kOption = "--figures";
 
 /// A named group of jobs, of which at least one ended without a failure.
-struct Group {
+struct NamedJobGroup {
   std::string name;
   JobGroup jobs;
   std::size_t done = 0;
 };
 
-std::vector<Group> groups_of(const Sweep& sweep, const std::vector<Row>& results) {
+std::vector<NamedJobGroup> groups_of(const Sweep& sweep, const std::vector<Row>& results) {
   const std::vector<std::string> keys = varying_keys(sweep, setting_keys(sweep));
-  std::vector<Group> groups;
+  std::vector<NamedJobGroup> groups;
   for (JobGroup& one : group_jobs(sweep, results, keys)) {
     const auto done = std::count_if(one.jobs.begin(), one.jobs.end(),
                                     [](const JobResult& job) { return job.row != nullptr && is_done(*job.row); });
@@ -60,7 +60,7 @@ void draw_boxes(FigureLayout& layout, const Box& box, const std::string& metric,
                 const std::vector<std::vector<double>>& groups) {
   std::vector<double> all;
   for (const auto& values : groups) all.insert(all.end(), values.begin(), values.end());
-  const Scale scale = readable_scale(unit_of_column(metric), all);
+  const DisplayScale scale = readable_scale(unit_of_column(metric), all);
   std::string boxes;
   std::string dots;
   for (std::size_t g = 0; g < groups.size(); ++g) {
@@ -94,11 +94,11 @@ void draw_boxes(FigureLayout& layout, const Box& box, const std::string& metric,
 }
 
 /// Returns the metrics of the figure for which at least one job has a value.
-std::vector<std::string> drawn_metrics(const std::vector<Group>& groups, const std::vector<Row>& results) {
+std::vector<std::string> drawn_metrics(const std::vector<NamedJobGroup>& groups, const std::vector<Row>& results) {
   std::vector<std::string> out{"object_taps", main_error(results), "footprint_iou", "robot_seconds"};
   const auto is_absent = [&](const std::string& metric) {
     return std::all_of(groups.begin(), groups.end(),
-                       [&](const Group& one) { return values_of(one.jobs, metric, kOption).empty(); });
+                       [&](const NamedJobGroup& one) { return values_of(one.jobs, metric, kOption).empty(); });
   };
   out.erase(std::remove_if(out.begin(), out.end(), is_absent), out.end());
   return out;
@@ -106,7 +106,7 @@ std::vector<std::string> drawn_metrics(const std::vector<Group>& groups, const s
 
 /// Writes the names of the groups in at most three lines each. The first name is at `top`; `step` is the distance
 /// between names.
-void write_names(FigureLayout& layout, const std::vector<Group>& groups, double top, double step) {
+void write_names(FigureLayout& layout, const std::vector<NamedJobGroup>& groups, double top, double step) {
   for (std::size_t g = 0; g < groups.size(); ++g) {
     std::vector<std::string> lines = wrapped(groups[g].name, kLongestName);
     if (lines.size() > 3) lines[2] += "...";
@@ -119,11 +119,11 @@ void write_names(FigureLayout& layout, const std::vector<Group>& groups, double 
 Figure distributions_figure(const Sweep& sweep, const std::vector<Row>& results) {
   constexpr double kTop = 86;
   constexpr double kWidth = 250;
-  std::vector<Group> groups = groups_of(sweep, results);
+  std::vector<NamedJobGroup> groups = groups_of(sweep, results);
   const std::size_t left_out = groups.size() > kMostGroups ? groups.size() - kMostGroups : 0;
   groups.resize(groups.size() - left_out);
   std::size_t longest = 0;
-  for (const Group& group : groups) longest = std::max(longest, group.name.size());
+  for (const NamedJobGroup& group : groups) longest = std::max(longest, group.name.size());
   const std::vector<std::string> metrics = drawn_metrics(groups, results);
   const double height = (longest > kLongestName ? 52 : 34) * std::max(2.0, static_cast<double>(groups.size()));
   const double left = 46 + 8.0 * static_cast<double>(std::min(longest, kLongestName));
@@ -133,14 +133,15 @@ Figure distributions_figure(const Sweep& sweep, const std::vector<Row>& results)
       static_cast<int>(bottom + 44));
   layout.text(sweep_name(sweep), 24, 14, 15);
   std::string words = "line: 10 % to 90 % of a group's jobs; box: the middle half; bar: median";
-  const bool dots = std::any_of(groups.begin(), groups.end(), [](const Group& one) { return one.done <= kMostDots; });
+  const bool dots =
+      std::any_of(groups.begin(), groups.end(), [](const NamedJobGroup& one) { return one.done <= kMostDots; });
   if (dots) words += "; dots: jobs";
   if (left_out > 0) words += fmt::format("; {} more groups are not shown, results.csv has them", left_out);
   layout.text(words, 24, 42, 11);
   write_names(layout, groups, kTop, height / static_cast<double>(std::max<std::size_t>(groups.size(), 1)));
   for (std::size_t m = 0; m < metrics.size(); ++m) {
     std::vector<std::vector<double>> values;
-    for (const Group& group : groups) values.push_back(values_of(group.jobs, metrics[m], kOption));
+    for (const NamedJobGroup& group : groups) values.push_back(values_of(group.jobs, metrics[m], kOption));
     draw_boxes(layout, {left + (kWidth + 40) * static_cast<double>(m), kTop, kWidth, height}, metrics[m], values);
   }
   const auto done = std::count_if(results.begin(), results.end(), [](const Row& row) { return is_done(row); });
@@ -149,7 +150,7 @@ Figure distributions_figure(const Sweep& sweep, const std::vector<Row>& results)
 }
 
 /// A swept key and its shown values, in the order of the sweep.
-struct Axis {
+struct HeatMapAxis {
   std::string key;
   std::vector<std::string> values;
   bool cut = false;
@@ -159,8 +160,8 @@ struct Axis {
   }
 };
 
-Axis axis_of(const Sweep& sweep, const std::string& key) {
-  Axis axis{key, {}};
+HeatMapAxis axis_of(const Sweep& sweep, const std::string& key) {
+  HeatMapAxis axis{key, {}};
   for (const JobGroup& group : group_jobs(sweep, {}, {key})) axis.values.push_back(group.values.front());
   axis.cut = axis.values.size() > kMostValues;
   axis.values.resize(std::min(axis.values.size(), kMostValues));
@@ -177,8 +178,8 @@ std::string tics(const std::vector<std::string>& values) {
 
 /// Mean errors by the values of two keys; NaN where no job has a value.
 struct HeatMap {
-  Axis x;
-  Axis y;
+  HeatMapAxis x;
+  HeatMapAxis y;
   std::string error;
   std::vector<std::vector<double>> cells;  ///< one row per value of the key on the y axis
   std::vector<double> means;               ///< values of all cells with a value
@@ -200,7 +201,7 @@ HeatMap heat_map_of(const Sweep& sweep, const std::vector<Row>& results, const s
 
 /// Adds data blocks with the cells as a matrix, and with the numbers to print in the cells. Numbers are black on light
 /// colours and white on dark colours.
-void add_cells(FigureLayout& layout, const HeatMap& map, const Scale& scale, const Colours& colours) {
+void add_cells(FigureLayout& layout, const HeatMap& map, const DisplayScale& scale, const ColourScale& colours) {
   std::string matrix;
   std::string numbers;
   for (std::size_t r = 0; r < map.cells.size(); ++r) {
@@ -239,11 +240,11 @@ std::optional<Figure> heat_map(const Sweep& sweep, const std::vector<Row>& resul
   if (keys.size() < 2) return {};
   const HeatMap map = heat_map_of(sweep, results, keys);
   if (map.means.empty()) return {};
-  const Scale scale = readable_scale(Unit::metre, map.means);
+  const DisplayScale scale = readable_scale(Unit::metre, map.means);
   const auto [low, high] = std::minmax_element(map.means.begin(), map.means.end());
   const double least = *low / scale.factor;
   const double most = *high > *low ? *high / scale.factor : least + 1.0;
-  const Colours colours{Palette::viridis, least, most, scale.title("mean " + map.error)};
+  const ColourScale colours{Palette::viridis, least, most, scale.title("mean " + map.error)};
   constexpr std::size_t kLongestValue = 40;
   constexpr double kCellWidth = 74;
   const std::size_t longest_x = longest_of(map.x.values);

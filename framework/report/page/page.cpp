@@ -45,7 +45,8 @@ Json json_of_colours() {
 Json display_units(const std::vector<std::string>& columns) {
   Json out = Json::object();
   for (const std::string& name : columns) {
-    const Scale scale = boost::ends_with(name, "_bytes") ? Scale{"MB", 1e6} : usual_scale(unit_of_column(name));
+    const DisplayScale scale =
+        boost::ends_with(name, "_bytes") ? DisplayScale{"MB", 1e6} : usual_scale(unit_of_column(name));
     if (!scale.unit.empty()) out[name] = {{"unit", scale.unit}, {"factor", 1.0 / scale.factor}};
   }
   return out;
@@ -71,7 +72,7 @@ std::string base64(std::string_view bytes) {
 
 std::string line_of(const Json& data) { return data.dump(-1, ' ', false, Json::error_handler_t::replace); }
 
-std::string make_page(std::string_view script, const Json& data, const std::string& maps, PageOf of) {
+std::string make_page(std::string_view script, const Json& data, const std::string& maps, PageOrigin of) {
   // plotly needs unsafe-eval to draw with WebGL.
   constexpr const char* kPolicy =
       "default-src 'none'; script-src 'unsafe-inline' 'unsafe-eval'; style-src 'unsafe-inline'; img-src data: blob:";
@@ -80,9 +81,9 @@ std::string make_page(std::string_view script, const Json& data, const std::stri
       "http-equiv=\"Content-Security-Policy\" content=\"{}{}\">\n{}<meta name=\"viewport\" "
       "content=\"width=device-width\">\n<title>palpate</title>\n<style>\n{}</style>\n</head>\n<body>\n<noscript>This "
       "page needs JavaScript, which your browser does not run.</noscript>\n",
-      kPolicy, of == PageOf::server ? "; connect-src 'self'" : "",
+      kPolicy, of == PageOrigin::server ? "; connect-src 'self'" : "",
       // With an empty icon, browsers do not request an icon from the server.
-      of == PageOf::server ? "<link rel=\"icon\" href=\"data:,\">\n" : "", palpate_asset_style);
+      of == PageOrigin::server ? "<link rel=\"icon\" href=\"data:,\">\n" : "", palpate_asset_style);
   static const std::string plotly =
       packed("plotly", "gzip",
              {palpate_asset_plotly, static_cast<std::size_t>(palpate_asset_plotly_end - palpate_asset_plotly)});

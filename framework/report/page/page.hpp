@@ -19,10 +19,11 @@ extern "C" const char palpate_asset_sweep[];
 namespace palpate {
 
 /// Origin of a page: a file, or a server to which the page may send requests.
-enum class PageOf { file, server };
+enum class PageOrigin { file, server };
 
 /// Returns a page that runs the common script and then `script`, on the data and the bytes of the maps.
-std::string make_page(std::string_view script, const Json& data, const std::string& maps, PageOf of = PageOf::file);
+std::string make_page(std::string_view script, const Json& data, const std::string& maps,
+                      PageOrigin of = PageOrigin::file);
 
 /// Returns the unit in which pages show each column, as {unit, factor}: a value in SI times `factor` is in `unit`. The
 /// units are those of config/display_units.hpp, and megabytes for sizes in bytes. Columns without a unit are left out.

@@ -79,7 +79,7 @@ Table build_table(const Tree& manifest) {
 
 }  // namespace
 
-static void to_json(Json& out, const Relabelled& one) { out = one.tap; }
+static void to_json(Json& out, const RelabelledContact& one) { out = one.tap; }
 static void to_json(Json& out, const TapReading& one) { out = {{"tap", one.tap}, {"words", doubt_words(one)}}; }
 
 static void to_json(Json& out, const RunAtTap& moment) {
@@ -226,7 +226,7 @@ static Json json_of_standing(const RecordedRun& recording, const History& histor
           {"constants", curves.constants},     {"warnings", warnings_of(recording, history)}};
 }
 
-static void to_json(Json& out, const Colours& one) {
+static void to_json(Json& out, const ColourScale& one) {
   out = {{"low", one.low}, {"high", one.high}, {"logarithmic", one.logarithmic}, {"label", one.label}};
 }
 
@@ -300,12 +300,13 @@ std::string live_run_page(const RecordedRun& recording, const History& history, 
   Json data = run_data(recording, history);
   const std::string bytes = add_maps(data, history, 1);
   data["live"] = at;
-  return make_page(palpate_asset_run, data, bytes, PageOf::server);
+  return make_page(palpate_asset_run, data, bytes, PageOrigin::server);
 }
 
 std::string waiting_page(const std::string& name, const std::string& id, const std::string& why,
                          const std::string& at) {
-  return make_page(palpate_asset_run, {{"name", name}, {"id", id}, {"waiting", why}, {"live", at}}, "", PageOf::server);
+  return make_page(palpate_asset_run, {{"name", name}, {"id", id}, {"waiting", why}, {"live", at}}, "",
+                   PageOrigin::server);
 }
 
 std::string run_news(const RecordedRun& recording, const History& history, int moments, const std::string& at) {

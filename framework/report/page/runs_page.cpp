@@ -54,7 +54,7 @@ Table standings_table(const std::vector<ComparedRun>& runs, const Json& describe
     for (const RecordField& error : page_errors()) {
       const auto has_value = [&](const Row& row) { return row.number(error.name).has_value(); };
       if (std::none_of(errors.begin(), errors.end(), has_value)) continue;
-      const Scale scale = usual_scale(error.unit);
+      const DisplayScale scale = usual_scale(error.unit);
       const auto value = errors[i].number(error.name);
       table.show(scale.title(error_title(error)), value ? significant(*value / scale.factor) : "–");
     }

@@ -99,10 +99,10 @@ Json json_of_column(const NumberColumn& one) {
           {"is_error", can_be_error(one.column)}};
 }
 
-/// Numbers the units of statistics (JobUnits) from 0. Returns for each job the number of its unit.
+/// Numbers the units of statistics (StatisticalUnits) from 0. Returns for each job the number of its unit.
 std::vector<std::size_t> unit_numbers(const Sweep& sweep, const std::vector<Row>& results,
                                       const std::vector<JobResult>& jobs) {
-  const JobUnits units(sweep, results);
+  const StatisticalUnits units(sweep, results);
   std::map<std::string, std::size_t> numbers;
   std::vector<std::size_t> of_job;
   for (const JobResult& one : jobs) of_job.push_back(numbers.emplace(units.of(one), numbers.size()).first->second);

@@ -34,7 +34,7 @@ void explain_place(TextSections& sections, const Row& row, const std::string& fo
   if (!said.empty()) sections.add(fmt::format("There {}.", fmt::join(said, ", ")));
 }
 
-class FromAboveExplained final : public Explanation {
+class FromAboveExplanation final : public Explanation {
  public:
   using Explanation::Explanation;
 
@@ -289,7 +289,7 @@ std::string explain_tap(const RunEnvironment& environment, const RecordedRun& re
                 taps == 1 ? "choose tap 1" : fmt::format("choose one of 1 to {}", taps));
   }
   if (recording.is_any_side()) return explain_approach(environment, recording, tap);
-  return FromAboveExplained(environment, recording, tap).text();
+  return FromAboveExplanation(environment, recording, tap).text();
 }
 
 }  // namespace palpate

@@ -31,14 +31,14 @@ std::string line_words(const TapLine& line) {
 
 std::string solid_words(const LineFacts::Solid& solid) {
   const std::vector<double> sides(solid.extent.begin(), solid.extent.end());
-  const Scale scale = readable_scale(Unit::metre, sides, 2, LengthKind::place);
+  const DisplayScale scale = readable_scale(Unit::metre, sides, 2, LengthKind::place);
   std::string out = fmt::format("{} of {} x {} x {}", solid.form, scale.number(sides[0]), scale.number(sides[1]),
                                 scale.quantity(sides[2]));
   if (solid.wall > 0.0) out += fmt::format(" with a wall of {}", length_words(solid.wall));
   return out;
 }
 
-class ApproachExplained final : public Explanation {
+class AnySideExplanation final : public Explanation {
  public:
   using Explanation::Explanation;
 
@@ -209,7 +209,7 @@ class ApproachExplained final : public Explanation {
 }  // namespace
 
 std::string explain_approach(const RunEnvironment& environment, const RecordedRun& recording, int tap) {
-  return ApproachExplained(environment, recording, tap).text();
+  return AnySideExplanation(environment, recording, tap).text();
 }
 
 }  // namespace palpate

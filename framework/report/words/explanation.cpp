@@ -40,7 +40,7 @@ void Explanation::explain_runner_up(const std::string& where, double score, doub
 }
 
 void Explanation::explain_label() {
-  for (const Relabelled& one : relabelled_in(recording_.summary.value_or(Row{}))) {
+  for (const RelabelledContact& one : relabelled_in(recording_.summary.value_or(Row{}))) {
     if (one.tap != number_) continue;
     text_.add(fmt::format(
         "After all {} taps it is read as a contact {}, because the offset of motion and arm is known better by then.",

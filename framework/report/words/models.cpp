@@ -13,7 +13,7 @@ namespace palpate {
 namespace {
 
 /// A GP and the record of a tap that describes it.
-struct Subject {
+struct DescribedGp {
   const char* title;
   std::string prefix;  ///< prefix of the GP's fields in the record, with the dot
   bool metric;         ///< whether the targets are heights in metres; otherwise they are labels
@@ -39,7 +39,7 @@ std::string parameter_words(std::string name) {
   return name;
 }
 
-std::string kernel_words(const Subject& subject) {
+std::string kernel_words(const DescribedGp& subject) {
   std::string out = subject.kernel.type;
   // The kernel object provides the units, which the record lacks.
   const auto parameters = subject.context.create<Kernel>(subject.kernel)->parameters();
@@ -53,7 +53,7 @@ std::string kernel_words(const Subject& subject) {
   return out;
 }
 
-std::string fit_words(const Subject& subject) {
+std::string fit_words(const DescribedGp& subject) {
   const std::optional<bool> changed = subject.row.flag(subject.prefix + "fit.changed");
   if (!changed) {
     return subject.fitting.type == "fixed"
@@ -70,7 +70,7 @@ std::string fit_words(const Subject& subject) {
   return out + (reason.empty() ? "." : ": " + reason + ".");
 }
 
-void explain_likelihood(TextSections& sections, const Subject& subject) {
+void explain_likelihood(TextSections& sections, const DescribedGp& subject) {
   std::vector<std::string> parts;
   if (const std::string value = subject.words("log_marginal_likelihood"); !value.empty())
     parts.push_back("Log marginal likelihood " + value + " (of its taps under these hyperparameters: more is better)");
@@ -84,7 +84,7 @@ void explain_likelihood(TextSections& sections, const Subject& subject) {
 }
 
 /// Returns a text about the engine, its approximation error, and jitter against rounding errors.
-std::string rounding_words(const Subject& subject) {
+std::string rounding_words(const DescribedGp& subject) {
   const double bound = subject.number("error_bound").value_or(0.0);
   const double jitter = subject.number("jitter").value_or(0.0);
   return fmt::format(
@@ -96,7 +96,7 @@ std::string rounding_words(const Subject& subject) {
                    : "No jitter was needed.");
 }
 
-void explain_process(TextSections& sections, const Subject& subject) {
+void explain_process(TextSections& sections, const DescribedGp& subject) {
   if (!subject.number("signal")) return;
   sections.add(fmt::format("{}: kernel {}; signal {} and noise {} (standard deviations), prior mean {}{}. {}",
                            subject.title, kernel_words(subject), subject.amount("signal"), subject.amount("noise"),
@@ -142,7 +142,7 @@ void explain_footprint(TextSections& sections, const Row& row, const std::string
 
 void explain_models(TextSections& sections, const Row& row, const ExperimentOptions& options,
                     const HeightMapOptions& own, const Context& context) {
-  const bool shared = own.label.hyperparameters == LabelOptions::Hyperparameters::shared;
+  const bool shared = own.label.hyperparameters == LabelOptions::HyperparameterSource::shared;
   const PluginChoice height_kernel = own.height.kernel.value_or(options.kernel);
   const PluginChoice height_fitting = own.height.fitting.value_or(options.fitting);
   const PluginChoice label_kernel = shared ? height_kernel : own.label.kernel.value_or(options.kernel);

@@ -21,13 +21,13 @@ namespace {
 
 /// Descriptors of the sockets with which this process locks arms. A forked child would hold the locks, too. So in the
 /// child, the null device replaces these sockets.
-struct Held {
+struct HeldSockets {
   std::mutex guard;
   std::set<int> numbers;
 };
 
-Held& held() {
-  static Held* const all = [] {
+HeldSockets& held() {
+  static HeldSockets* const all = [] {
     ::pthread_atfork([] { held().guard.lock(); }, [] { held().guard.unlock(); },
                      [] {
                        const Descriptor none(::open("/dev/null", O_RDONLY | O_CLOEXEC));
@@ -36,19 +36,19 @@ Held& held() {
                        }
                        held().guard.unlock();
                      });
-    return new Held;  // never destroyed, because the process may fork at any time
+    return new HeldSockets;  // never destroyed, because the process may fork at any time
   }();
   return *all;
 }
 
-struct Name {
+struct SocketName {
   sockaddr_un address{};
   socklen_t bytes = 0;
 };
 
-Name name_of(const std::string& arm) {
+SocketName name_of(const std::string& arm) {
   const std::string text = "palpate arm " + arm;
-  Name out;
+  SocketName out;
   out.address.sun_family = AF_UNIX;
   const std::size_t length = std::min(text.size(), sizeof out.address.sun_path - 1);
   std::memcpy(out.address.sun_path + 1, text.data(), length);  // the zero byte before it makes the name abstract
@@ -56,12 +56,12 @@ Name name_of(const std::string& arm) {
   return out;
 }
 
-const sockaddr* generic(const Name& name) { return reinterpret_cast<const sockaddr*>(&name.address); }
+const sockaddr* generic(const SocketName& name) { return reinterpret_cast<const sockaddr*>(&name.address); }
 
 Descriptor make_socket() { return above_standard(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0)); }
 
 /// Returns a description of the process that holds the name.
-std::string holder_of(const Name& name) {
+std::string holder_of(const SocketName& name) {
   const Descriptor caller = make_socket();
   ucred who{};
   socklen_t size = sizeof who;
@@ -73,7 +73,7 @@ std::string holder_of(const Name& name) {
 }  // namespace
 
 ArmLock::ArmLock(const std::string& where, const std::string& arm) {
-  const Name name = name_of(arm);
+  const SocketName name = name_of(arm);
   const std::lock_guard<std::mutex> no_fork(held().guard);
   Descriptor socket = make_socket();
   // The socket accepts no connection. It only listens, so that holder_of() can connect and read the process id of the

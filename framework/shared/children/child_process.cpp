@@ -79,7 +79,7 @@ std::vector<std::string> own_environment() {
 
 /// Uses posix_spawn, because fork would copy a large process and the locks of other threads. execvp is not used,
 /// because it passes a file that is not an executable program to a shell.
-pid_t spawn(const Program& program, const std::vector<int>& files) {
+pid_t spawn(const ProgramCall& program, const std::vector<int>& files) {
   const std::vector<char*> words = pointers(program.words);
   const std::vector<char*> environment = pointers(program.environment);
   posix_spawn_file_actions_t actions;
@@ -132,7 +132,7 @@ std::unique_ptr<ChildProcess> ChildProcess::fork(const std::function<int(const S
   return out;
 }
 
-std::unique_ptr<ChildProcess> ChildProcess::start(const Program& program, std::string_view input) {
+std::unique_ptr<ChildProcess> ChildProcess::start(const ProgramCall& program, std::string_view input) {
   std::unique_ptr<ChildProcess> out(new ChildProcess);
   // The input is in an unnamed file, because writing to a program that waits for its output to be read can block for
   // ever.

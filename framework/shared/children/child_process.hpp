@@ -60,7 +60,7 @@ bool write_all(const Descriptor& to, std::string_view text);
 /// Returns the environment of this process, one "NAME=VALUE" per variable.
 std::vector<std::string> own_environment();
 
-struct Program {
+struct ProgramCall {
   std::vector<std::string> words;                            ///< name and arguments, not interpreted by a shell
   std::string file{};                                        ///< executable; if empty, the name is searched on PATH
   std::vector<std::string> environment = own_environment();  ///< if a name occurs twice, its first value is used
@@ -75,7 +75,7 @@ struct Program {
 /// larger than its new number. Returns the process id, or -1 and sets errno; ENOENT means that there is no such
 /// program. The caller must wait for the process (waitpid()). Use this function to exchange messages with a running
 /// program, and ChildProcess otherwise.
-pid_t spawn(const Program& program, const std::vector<int>& files);
+pid_t spawn(const ProgramCall& program, const std::vector<int>& files);
 
 /// Child process whose output is read until its end.
 class ChildProcess {
@@ -92,7 +92,7 @@ class ChildProcess {
 
   /// Starts `program` with `input` as its stdin. Its stdout and stderr are the child's output. The program continues if
   /// this process ends. Returns null and sets errno if the program cannot be started.
-  static std::unique_ptr<ChildProcess> start(const Program& program, std::string_view input = {});
+  static std::unique_ptr<ChildProcess> start(const ProgramCall& program, std::string_view input = {});
 
   /// Kills the child if it has not ended, and waits for its end.
   ~ChildProcess();

@@ -65,11 +65,11 @@ double exp_of(double x, double low) {
 }
 
 /// x = 2^exponent (1 + f) with 1 + f in [sqrt(1/2), sqrt(2)].
-struct Split {
+struct FloatParts {
   double exponent;
   double f;
 };
-Split split(double x) {
+FloatParts split(double x) {
   int exponent = 0;
   double m = std::frexp(x, &exponent);
   if (m < 0.70710678118654752440) {
@@ -109,11 +109,11 @@ Pair log_of(double x) {
 }
 
 /// Reduction of an angle: x = n pi / 2 + r with |r| <= pi / 4.
-struct Reduced {
+struct ReducedAngle {
   int quarter;  ///< n modulo 4
   Pair r;       ///< NaN if |x| > kMostAngle
 };
-Reduced reduce(double x) {
+ReducedAngle reduce(double x) {
   if (!(std::abs(x) <= kMostAngle)) return {0, {kNaN, kNaN}};
   // pi / 2 as a sum of three numbers. The first two numbers have 33 significant bits, so their products with n < 2^20
   // are exact.
@@ -190,13 +190,13 @@ double pow(double x, double y) {
 }
 
 double sin(double x) {
-  const Reduced at = reduce(x);
+  const ReducedAngle at = reduce(x);
   const double out = at.quarter % 2 == 0 ? sine(at.r) : cosine(at.r);
   return at.quarter < 2 ? out : -out;
 }
 
 double cos(double x) {
-  const Reduced at = reduce(x);
+  const ReducedAngle at = reduce(x);
   const double out = at.quarter % 2 == 0 ? cosine(at.r) : sine(at.r);
   return at.quarter == 1 || at.quarter == 2 ? -out : out;
 }

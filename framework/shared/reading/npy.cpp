@@ -41,12 +41,12 @@ std::vector<std::uint64_t> parse_sizes(std::string_view shape) {
 
 }  // namespace
 
-std::optional<NpyPlace> npy_header_place(std::string_view bytes) {
+std::optional<NpyHeaderSpan> npy_header_place(std::string_view bytes) {
   constexpr std::string_view kMagic = "\x93NUMPY";
   if (bytes.size() < kNpyStart || bytes.substr(0, kMagic.size()) != kMagic) return std::nullopt;
   const char version = bytes[kMagic.size()];
   if (version < 1 || version > 3) return std::nullopt;
-  NpyPlace out;
+  NpyHeaderSpan out;
   out.begin = version == 1 ? kNpyStart : kLongNpyStart;
   if (bytes.size() < out.begin) return std::nullopt;
   for (std::size_t i = out.begin; i-- > kMagic.size() + 2;)

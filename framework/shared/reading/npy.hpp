@@ -17,14 +17,14 @@ constexpr std::size_t kNpyStart = 10;
 constexpr std::size_t kLongNpyStart = 12;
 
 /// Position of the header's text, in bytes from the beginning of the file. The values of the array follow the text.
-struct NpyPlace {
+struct NpyHeaderSpan {
   std::size_t begin = 0;
   std::size_t length = 0;
 };
 
 /// Reads the position of the header's text from the first bytes of a file. Returns nullopt if there are too few bytes
 /// or the file is not an NPY file.
-std::optional<NpyPlace> npy_header_place(std::string_view bytes);
+std::optional<NpyHeaderSpan> npy_header_place(std::string_view bytes);
 
 /// Description of the values in a header. Missing or malformed parts are empty.
 struct NpyHeader {

@@ -18,10 +18,10 @@ namespace fs = std::filesystem;
 
 namespace {
 
-Reading failed(int reason) {
+FileReading failed(int reason) {
   // Only these errors mean that there is no such file. All other errors, for example missing permissions, are failures.
   const bool absent = reason == ENOENT || reason == ENOTDIR || reason == ENAMETOOLONG;
-  return {absent ? Reading::Kind::absent : Reading::Kind::failed, {}, {reason, std::generic_category()}};
+  return {absent ? FileReading::Kind::absent : FileReading::Kind::failed, {}, {reason, std::generic_category()}};
 }
 
 bool is_link(const fs::path& path) {
@@ -41,9 +41,9 @@ bool job_is_linked(const fs::path& file) {
 }
 
 /// Reads up to `most_bytes`. `size` is only a hint, because files grow, and files of /proc have size 0.
-Reading read_descriptor(int number, std::uintmax_t size, std::uintmax_t most_bytes) {
-  Reading out{Reading::Kind::whole, {}};
-  if (size > most_bytes) return {Reading::Kind::too_large, {}};
+FileReading read_descriptor(int number, std::uintmax_t size, std::uintmax_t most_bytes) {
+  FileReading out{FileReading::Kind::whole, {}};
+  if (size > most_bytes) return {FileReading::Kind::too_large, {}};
   std::string& text = out.text;
   text.resize(size + 1);  // one byte more, so that `text` need not grow before a read() finds the end of the file
   for (std::size_t read = 0;;) {
@@ -51,16 +51,16 @@ Reading read_descriptor(int number, std::uintmax_t size, std::uintmax_t most_byt
     if (more < 0 && errno == EINTR) continue;
     if (more < 0) return failed(errno);
     read += static_cast<std::size_t>(more);
-    if (read > most_bytes) return {Reading::Kind::too_large, {}};
+    if (read > most_bytes) return {FileReading::Kind::too_large, {}};
     if (more == 0) return text.resize(read), out;
     if (read == text.size()) text.resize(2 * text.size() + 4096);
   }
 }
 
 /// Reads the bytes from `begin` to `end`, or to the end of the file.
-Reading read_part(int number, std::uintmax_t begin, std::uintmax_t end) {
-  if (end > kMostLogBytes) return {Reading::Kind::too_large, {}};
-  Reading out{Reading::Kind::whole, {}};
+FileReading read_part(int number, std::uintmax_t begin, std::uintmax_t end) {
+  if (end > kMostLogBytes) return {FileReading::Kind::too_large, {}};
+  FileReading out{FileReading::Kind::whole, {}};
   out.begin = begin;
   out.text.resize(end - begin);
   for (std::size_t read = 0; read < out.text.size();) {
@@ -76,19 +76,19 @@ Reading read_part(int number, std::uintmax_t begin, std::uintmax_t end) {
 
 /// Opens a regular file and returns use(descriptor, size).
 template <class Use>
-Reading with_file(const fs::path& file, Origin origin, const Use& use) {
-  const bool inner = origin == Origin::record;
+FileReading with_file(const fs::path& file, FileOrigin origin, const Use& use) {
+  const bool inner = origin == FileOrigin::record;
   struct stat seen {};
   // The type is checked before open(), because opening a device may have an effect.
   if ((inner ? ::lstat(file.c_str(), &seen) : ::stat(file.c_str(), &seen)) != 0) return failed(errno);
-  if (S_ISLNK(seen.st_mode) || (inner && job_is_linked(file))) return {Reading::Kind::link, {}};
-  if (!S_ISREG(seen.st_mode)) return {Reading::Kind::not_regular, {}};
+  if (S_ISLNK(seen.st_mode) || (inner && job_is_linked(file))) return {FileReading::Kind::link, {}};
+  if (!S_ISREG(seen.st_mode)) return {FileReading::Kind::not_regular, {}};
   const int number = ::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY | (inner ? O_NOFOLLOW : 0));
   if (number < 0) return failed(errno);
   struct stat opened {};
-  Reading out = ::fstat(number, &opened) != 0 ? failed(errno)
-                : !S_ISREG(opened.st_mode)    ? Reading{Reading::Kind::not_regular, {}}
-                                              : use(number, static_cast<std::uintmax_t>(opened.st_size));
+  FileReading out = ::fstat(number, &opened) != 0 ? failed(errno)
+                    : !S_ISREG(opened.st_mode)    ? FileReading{FileReading::Kind::not_regular, {}}
+                                                  : use(number, static_cast<std::uintmax_t>(opened.st_size));
   ::close(number);
   return out;
 }
@@ -112,19 +112,19 @@ bool changes_layout(std::uint32_t point) {
 
 }  // namespace
 
-Reading read_bounded(const fs::path& file, std::uintmax_t most_bytes, Origin origin) {
+FileReading read_bounded(const fs::path& file, std::uintmax_t most_bytes, FileOrigin origin) {
   return with_file(file, origin,
                    [&](int number, std::uintmax_t size) { return read_descriptor(number, size, most_bytes); });
 }
 
-Reading read_begin_bounded(const fs::path& file, std::uintmax_t bytes, Origin origin) {
+FileReading read_begin_bounded(const fs::path& file, std::uintmax_t bytes, FileOrigin origin) {
   return with_file(file, origin, [&](int number, std::uintmax_t size) {
-    if (size > kMostLogBytes) return Reading{Reading::Kind::too_large, {}};
+    if (size > kMostLogBytes) return FileReading{FileReading::Kind::too_large, {}};
     return read_part(number, 0, std::min(size, bytes));
   });
 }
 
-Reading read_end_bounded(const fs::path& file, std::uintmax_t bytes, Origin origin) {
+FileReading read_end_bounded(const fs::path& file, std::uintmax_t bytes, FileOrigin origin) {
   return with_file(file, origin, [&](int number, std::uintmax_t size) {
     return read_part(number, size - std::min(size, bytes), size);
   });
@@ -135,22 +135,22 @@ void drop_byte_order_mark(std::string& text) {
   if (text.compare(0, kMark.size(), kMark) == 0) text.erase(0, kMark.size());
 }
 
-ReadingWords words_of(const Reading& reading, std::uintmax_t most_bytes) {
+ReadingFault words_of(const FileReading& reading, std::uintmax_t most_bytes) {
   switch (reading.kind) {
-    case Reading::Kind::not_regular:
+    case FileReading::Kind::not_regular:
       return {"is not a regular file", "put a file in its place, or remove it"};
-    case Reading::Kind::link:
+    case FileReading::Kind::link:
       return {"is a symbolic link, and links in a record are not followed", "remove it"};
-    case Reading::Kind::too_large: {
+    case FileReading::Kind::too_large: {
       const std::uintmax_t mebibyte = std::uintmax_t{1} << 20;
       const std::string most = most_bytes < mebibyte ? std::to_string(most_bytes) + " bytes"
                                                      : std::to_string(most_bytes / mebibyte) + " MiB";
       return {"is too large for its purpose: at most " + most + " are read",
               "the file is damaged: put it back as it was"};
     }
-    case Reading::Kind::whole:
-    case Reading::Kind::absent:
-    case Reading::Kind::failed:
+    case FileReading::Kind::whole:
+    case FileReading::Kind::absent:
+    case FileReading::Kind::failed:
       break;
   }
   return {reading.reason ? "cannot be read: " + reading.reason.message() : "cannot be read", {}};

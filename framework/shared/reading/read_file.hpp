@@ -28,13 +28,13 @@ constexpr std::uintmax_t kMostLibraryBytes = std::uintmax_t{1} << 30;
 constexpr std::uintmax_t kMostSystemBytes = std::uintmax_t{16} << 20;  ///< a file in /proc
 
 /// Source of a file's name.
-enum class Origin {
+enum class FileOrigin {
   user,   ///< the name is from a command line, a config of the user, or the installation: links are followed
   record  ///< the file is in a record, maybe of another user: links, even to the folder of a job, are not followed
 };
 
 /// Result of reading a file.
-struct Reading {
+struct FileReading {
   enum class Kind {
     whole,
     absent,       ///< no such file
@@ -54,24 +54,24 @@ struct Reading {
 
 /// Reads a whole file, which must have at most `most_bytes`. Never blocks on a pipe and opens no device. Throws only
 /// std::bad_alloc.
-Reading read_bounded(const std::filesystem::path& file, std::uintmax_t most_bytes, Origin origin);
+FileReading read_bounded(const std::filesystem::path& file, std::uintmax_t most_bytes, FileOrigin origin);
 
 /// Read the first, or the last, `bytes` of a file of at most kMostLogBytes. A file with fewer bytes is read as a whole.
 /// In all other respects, these functions behave like read_bounded().
-Reading read_begin_bounded(const std::filesystem::path& file, std::uintmax_t bytes, Origin origin);
-Reading read_end_bounded(const std::filesystem::path& file, std::uintmax_t bytes, Origin origin);
+FileReading read_begin_bounded(const std::filesystem::path& file, std::uintmax_t bytes, FileOrigin origin);
+FileReading read_end_bounded(const std::filesystem::path& file, std::uintmax_t bytes, FileOrigin origin);
 
 /// Removes the byte order mark at the beginning of a UTF-8 text.
 void drop_byte_order_mark(std::string& text);
 
 /// Parts of an Error about a file that was not read.
-struct ReadingWords {
+struct ReadingFault {
   std::string reason;
   std::string remedy;
 };
 /// Returns reason and remedy for a reading whose kind is not `whole`. `most_bytes` is the limit with which the file was
 /// read.
-ReadingWords words_of(const Reading& reading, std::uintmax_t most_bytes);
+ReadingFault words_of(const FileReading& reading, std::uintmax_t most_bytes);
 
 /// Returns the paths in a folder, sorted, without "." and "..". Returns an empty list and sets `trouble` if the folder
 /// cannot be listed.

@@ -79,15 +79,15 @@ std::string discovery_area(const BeliefView& belief, double) {
 
 /// Returns the array of a quantity that has one value per candidate.
 template <const char* const& kName>
-Map map_of() {
+ProgramMap map_of() {
   return {kName, {kName}, values<kName>};
 }
 
 }  // namespace
 
-const std::vector<Map>& maps() {
+const std::vector<ProgramMap>& maps() {
   using B = const BeliefView&;
-  static const std::vector<Map> all{
+  static const std::vector<ProgramMap> all{
       map_of<quantity::kUncertainty>(),
       map_of<quantity::kLabelMean>(),
       map_of<quantity::kObjectProbability>(),
@@ -114,13 +114,13 @@ const std::vector<Map>& maps() {
   return all;
 }
 
-const Map* find_map(const std::string& name) {
-  const auto at = std::find_if(maps().begin(), maps().end(), [&](const Map& one) { return name == one.name; });
+const ProgramMap* find_map(const std::string& name) {
+  const auto at = std::find_if(maps().begin(), maps().end(), [&](const ProgramMap& one) { return name == one.name; });
   return at != maps().end() ? &*at : nullptr;
 }
 
 std::size_t header_length(const std::string& start) {
-  const std::optional<NpyPlace> place = npy_header_place(start);
+  const std::optional<NpyHeaderSpan> place = npy_header_place(start);
   if (!place || place->begin != kNpyStart) throw std::runtime_error("data that is not an array in the format NPY 1.0");
   return place->length;
 }

@@ -13,7 +13,7 @@
 namespace palpate::program {
 
 /// An array that a program can read.
-struct Map {
+struct ProgramMap {
   const char* name;
   QuantitySet reads;
   /// returns an NPY file; `desk`: height of the desk, metres
@@ -21,9 +21,9 @@ struct Map {
 };
 
 /// Returns all arrays that programs can read.
-const std::vector<Map>& maps();
+const std::vector<ProgramMap>& maps();
 /// Returns the array with this name. Returns null if there is none.
-const Map* find_map(const std::string& name);
+const ProgramMap* find_map(const std::string& name);
 
 /// Returns the length of the header that follows the first kNpyStart bytes of an NPY file. Throws std::runtime_error
 /// unless the bytes start an NPY file of version 1. The message continues the text "the program answered with ".

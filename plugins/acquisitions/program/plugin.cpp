@@ -76,7 +76,7 @@ std::set<std::string> declarations(const std::string& program) {
 /// Returns the names of all arrays, separated by commas: "uncertainty, label_mean, ...".
 std::string all_names() {
   std::vector<const char*> names;
-  for (const program::Map& one : program::maps()) names.push_back(one.name);
+  for (const program::ProgramMap& one : program::maps()) names.push_back(one.name);
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
@@ -183,13 +183,13 @@ class ProgramAcquisition final : public Acquisition {
 
   QuantitySet reads() const override {
     QuantitySet out;
-    for (const program::Map* one : maps_) out = out | one->reads;
+    for (const program::ProgramMap* one : maps_) out = out | one->reads;
     return out;
   }
 
   void score(const BeliefView& belief, VectorOut out) const override {
     std::vector<std::string> arrays;
-    for (const program::Map* one : maps_) arrays.push_back(one->npy(belief, context_.scene.desk()));
+    for (const program::ProgramMap* one : maps_) arrays.push_back(one->npy(belief, context_.scene.desk()));
     const Candidates& candidates = belief.candidates();
     std::string fields = fmt::format(R"("tap":{})", belief.taps().count + 1);
     if (candidates.fixed)
@@ -227,7 +227,7 @@ class ProgramAcquisition final : public Acquisition {
     double seconds = options_.deadline;
     if (!child_) {
       seconds += options_.start;
-      Program program{words_, file_};
+      ProgramCall program{words_, file_};
       program.folder = options_.folder;
       program.environment.insert(program.environment.begin(), python_path());
       programs::find_checked(options_.command, words_, options_.folder, options_.checksum);
@@ -311,7 +311,7 @@ class ProgramAcquisition final : public Acquisition {
 
   Options options_;
   const Context& context_;
-  std::vector<const program::Map*> maps_;
+  std::vector<const program::ProgramMap*> maps_;
   std::vector<std::string> words_;
   std::string file_;
   mutable std::unique_ptr<Child> child_;  ///< mutable as a cache; score() is still a pure function of the belief

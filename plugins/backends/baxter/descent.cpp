@@ -14,7 +14,7 @@ namespace palpate::baxter {
 namespace {
 
 using tapping::newtons;
-using Then = Fault::Then;
+using AllowedAction = Fault::AllowedAction;
 
 /// A pull is a fault after kPullTime seconds of consecutive new readings. These are at least kFewestPullReadings and at
 /// most kMostPullReadings readings.
@@ -38,7 +38,7 @@ constexpr double kLeastZeroChange = 2.5;
 
 /// Mean force along z while the arm descends at constant speed and lags behind its set-point. Gives no result if the
 /// force rises meanwhile, because a contact may begin.
-class EvenDescent {
+class ConstantSpeedForce {
  public:
   /// Takes a reading `time` seconds after the set-point began to descend. Returns the mean once it is complete.
   std::optional<double> add(double time, double force) {
@@ -61,7 +61,7 @@ class EvenDescent {
 
 /// Control periods in which the arm descends at constant speed: all until now, and all until the last detection of a
 /// contact.
-struct EvenPeriods {
+struct ConstantSpeedPeriods {
   std::vector<ReactionTime::Period> now;
   std::vector<double> lags;  ///< m by which the tip trails its set-point in each period
   double least_lag = 0.0;    ///< m, minimum of lags
@@ -104,7 +104,7 @@ struct EvenPeriods {
 /// Guarded tap for an unknown sign of the force. Two taps, one per sign, run in parallel until one of them detects a
 /// contact. That tap continues. If its contact is accepted, its sign is adopted as that of the robot.
 class SignedTap {
-  struct One {
+  struct SignTrial {
     double sign;
     tapping::GuardedTap tap;
     double set_point = 0.0;
@@ -113,13 +113,13 @@ class SignedTap {
  public:
   /// `sign`: sign of the force when an object presses the tool upwards, 1 or -1; 0 if unknown.
   SignedTap(const tapping::MotionOptions& motion, const tapping::Descent& descent, double sign) {
-    const tapping::GuardedTap tap(motion, descent, tapping::GuardedTap::Arm::real);
-    taps_ = sign != 0.0 ? std::vector<One>{{sign, tap}} : std::vector<One>{{-1.0, tap}, {1.0, tap}};
+    const tapping::GuardedTap tap(motion, descent, tapping::GuardedTap::ArmKind::real);
+    taps_ = sign != 0.0 ? std::vector<SignTrial>{{sign, tap}} : std::vector<SignTrial>{{-1.0, tap}, {1.0, tap}};
   }
 
   /// Calls GuardedTap::next() for each sign. `force`: force along z as the robot reports it, N.
   double next(double height, double force, bool fresh) {
-    for (One& one : taps_) one.set_point = one.tap.next(height, one.sign * force, fresh);
+    for (SignTrial& one : taps_) one.set_point = one.tap.next(height, one.sign * force, fresh);
     if (taps_.size() == 2 && taps_.front().set_point != taps_.back().set_point) {
       // The tap with the contact puts its set-point at the height of the arm.
       const bool second = taps_.back().set_point == height;
@@ -129,7 +129,7 @@ class SignedTap {
   }
 
   void slow_to(double speed) {
-    for (One& one : taps_) one.tap.slow_to(speed);
+    for (SignTrial& one : taps_) one.tap.slow_to(speed);
   }
   const tapping::GuardedTap& tap() const { return taps_.front().tap; }
   /// Returns the zero of the force along z, with the robot's sign.
@@ -138,7 +138,7 @@ class SignedTap {
   double sign() const { return taps_.size() == 1 ? taps_.front().sign : 0.0; }
 
  private:
-  std::vector<One> taps_;
+  std::vector<SignTrial> taps_;
 };
 
 }  // namespace
@@ -157,9 +157,9 @@ struct Tapper::DescentState {
   bool tared = false;
   bool goes_up = false;
   std::vector<Eigen::Vector3d> tare = {};  ///< readings of the current tare
-  EvenDescent even = {};
+  ConstantSpeedForce even = {};
   std::optional<double> moving = {};  ///< N along z: force of a free descent minus force at rest
-  EvenPeriods periods = {};
+  ConstantSpeedPeriods periods = {};
   int pulled = 0;  ///< number of consecutive readings with a pull
   int quiet = 0;   ///< number of consecutive readings that differ from the zero by less than half the threshold
 
@@ -206,7 +206,7 @@ void Tapper::update(DescentState& way) {
   // Called once per rise, because a new call resets the count of readings with a pull.
   if (way.set_point > before && !way.goes_up && sign != 0.0) {
     const double along = std::clamp(way.plan.hover + kFromAbove - height(), 0.0, way.column.length() - kRotationWindow);
-    guard_.expect_rise(MotionGuard::Rise{way.tap.zero(), sign, largest_pull(way.column, along)});
+    guard_.expect_rise(MotionGuard::RiseLimits{way.tap.zero(), sign, largest_pull(way.column, along)});
   }
   if (way.set_point < before) guard_.expect_rise(std::nullopt);
   if (way.set_point != before) way.goes_up = way.set_point > before;
@@ -231,13 +231,13 @@ void Tapper::expect_following(const DescentState& way) const {
   throw Fault{fmt::format("the arm does not follow: it stays {:.1f} mm behind its set-point without a contact force. "
                           "Check what blocks it, and whether other programs command it",
                           1e3 * behind),
-              Then::hold};
+              AllowedAction::hold};
 }
 
 /// Reduces the speed if messages become later or the force is renewed less often, because less time is then left to
 /// stop.
 void Tapper::slow_down(DescentState& way) {
-  const double greatest = greatest_speed(way.motion.threshold, way.stiffness, Then::retreat);
+  const double greatest = greatest_speed(way.motion.threshold, way.stiffness, AllowedAction::retreat);
   if (greatest >= way.speed) return;
   way.speed = greatest;
   way.tap.slow_to(greatest);
@@ -283,7 +283,7 @@ void Tapper::evaluate_force(DescentState& way, double felt, double beside, bool 
   if (way.pulled < std::clamp(kPullTime / guard_.renewals().seconds(), kFewestPullReadings, kMostPullReadings)) return;
   throw Fault{
       "the force fell by more than the threshold although nothing can pull: its zero moved, or force_sign is wrong",
-      Then::retreat};
+      AllowedAction::retreat};
 }
 
 /// Accepts the contact if the force at rest is the same as before the tap. The limit is larger for sideways forces,

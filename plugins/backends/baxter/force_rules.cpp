@@ -10,10 +10,10 @@
 namespace palpate::baxter {
 namespace {
 
-using Then = Fault::Then;
+using AllowedAction = Fault::AllowedAction;
 
 /// Returns the pull in N. A press changes the force in the direction `rise.sign`, a pull in the opposite direction.
-double pull_force(const MotionGuard::Rise& rise, const EndpointReading& endpoint) {
+double pull_force(const MotionGuard::RiseLimits& rise, const EndpointReading& endpoint) {
   return rise.sign * (rise.zero - endpoint.force.z());
 }
 
@@ -22,7 +22,7 @@ Fault caught_fault(double newtons, const Eigen::Vector3d& tip, bool reflex) {
   return {fmt::format("the tool is caught: it is pulled with {:.0f} N at ({:.1f}, {:.1f}, {:.1f}) cm of the scene. "
                       "Find what holds the tool, and free it by hand before the arm moves up again",
                       newtons, 100 * tip.x(), 100 * tip.y(), 100 * tip.z()),
-          Then::hold, true, reflex};
+          AllowedAction::hold, true, reflex};
 }
 
 }  // namespace
@@ -54,7 +54,7 @@ std::optional<Fault> MotionGuard::check_frozen(const EndpointReading& endpoint, 
   return Fault{fmt::format("endpoint_state has had exactly the same force for {} messages, but changed every {:.1f} "
                            "before: its publisher is frozen, restart the robot",
                            equal, renewals_.messages()),
-               Then::hold};
+               AllowedAction::hold};
 }
 
 /// Returns the fault of the firmware's reflex. If the arm was rising under a pull, the tool is caught.
@@ -66,15 +66,15 @@ std::optional<Fault> MotionGuard::reflex_fault(const Snapshot& seen, const Eigen
   return Fault{
       "the arm's own reflex stopped it, at 16 N or at an impact: lower motion.speed or motion.threshold, or check what "
       "the arm hit",
-      Then::retreat, true, true};
+      AllowedAction::retreat, true, true};
 }
 
 std::optional<Fault> MotionGuard::check_pull(const Snapshot& seen, const Eigen::Vector3d& tip, double since) {
   if (!motion_.rise) return std::nullopt;
-  Rise& rise = *motion_.rise;
+  RiseLimits& rise = *motion_.rise;
   const double pulls = pull_force(rise, *seen.endpoint);
-  if (rise.follows == Zero::follows) {
-    if (!motion_.anchor) motion_.anchor = Motion::Anchor{rise.zero, tip.z()};
+  if (rise.follows == ZeroMode::follows) {
+    if (!motion_.anchor) motion_.anchor = Motion::ZeroReference{rise.zero, tip.z()};
     const double most = kMostDrift * std::max(0.0, tip.z() - motion_.anchor->height);
     rise.zero -= rise.sign * pulls * std::min(1.0, since / kRiseFollows);
     rise.zero = std::clamp(rise.zero, motion_.anchor->zero - most, motion_.anchor->zero + most);
@@ -92,14 +92,14 @@ std::optional<Fault> MotionGuard::check_force(const Snapshot& seen, const Eigen:
   if (!motion_.tare) return std::nullopt;
   const Eigen::Vector3d felt = seen.endpoint->force - *motion_.tare;
   const double change =
-      zero_ == Zero::follows ? felt.norm() : std::max(std::abs(felt.z()), felt.head<2>().norm() / kSideways);
-  if (zero_ == Zero::follows) *motion_.tare += felt * std::min(1.0, since / kZeroFollows);
+      zero_ == ZeroMode::follows ? felt.norm() : std::max(std::abs(felt.z()), felt.head<2>().norm() / kSideways);
+  if (zero_ == ZeroMode::follows) *motion_.tare += felt * std::min(1.0, since / kZeroFollows);
   motion_.too_strong = change > force_stop_ ? motion_.too_strong + 1 : 0;
   if (motion_.too_strong < kForceSamples) return std::nullopt;
   return Fault{fmt::format("the force changed by {:.1f} N, more than force_stop allows: lower motion.speed or "
                            "motion.threshold, or check what the arm hit",
                            change),
-               Then::retreat};
+               AllowedAction::retreat};
 }
 
 }  // namespace palpate::baxter

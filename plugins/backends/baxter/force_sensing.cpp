@@ -13,7 +13,7 @@ namespace palpate::baxter {
 namespace {
 
 using tapping::newtons;
-using Then = Fault::Then;
+using AllowedAction = Fault::AllowedAction;
 
 constexpr std::size_t kForceSamples = 25;        ///< number of new readings for the force at rest
 constexpr std::size_t kFewestForceSamples = 12;  ///< minimum number of readings after kForcePatience
@@ -84,7 +84,7 @@ double Tapper::stiffness_at(const Target& place) const {
 
 /// Returns the greatest speed (m/s) at which the expected force of a contact is at most ReactionTime::kGreatestForce.
 /// Throws Fault with the action `then` if this speed is too low for taps.
-double Tapper::greatest_speed(double threshold, double stiffness, Then then) const {
+double Tapper::greatest_speed(double threshold, double stiffness, AllowedAction then) const {
   const double greatest = reaction_.greatest_speed(threshold, stiffness);
   if (greatest >= reaction_.slowest()) return greatest;
   const char* const assumed = reaction_.measured() ? "" : "before the first measured contact it is assumed that ";
@@ -111,11 +111,12 @@ tapping::MotionOptions Tapper::bounded(tapping::MotionOptions motion, double sti
     motion.threshold = std::min(motion.threshold, kFirstThreshold);
     motion.fine_threshold = std::min(motion.fine_threshold, motion.threshold);
   }
-  const double greatest = greatest_speed(motion.threshold, stiffness, Then::hold);
+  const double greatest = greatest_speed(motion.threshold, stiffness, AllowedAction::hold);
   const double configured = motion.speed;
   motion.speed = std::min(motion.speed, greatest);
   if (motion.type == tapping::MotionOptions::Type::two_stage)
-    motion.fine_speed = std::min(motion.fine_speed, greatest_speed(motion.fine_threshold, stiffness, Then::hold));
+    motion.fine_speed =
+        std::min(motion.fine_speed, greatest_speed(motion.fine_threshold, stiffness, AllowedAction::hold));
   if (motion.adaptive_hover) motion.adaptive_hover->speed = std::min(motion.adaptive_hover->speed, greatest);
   const double way = motion.hover + motion.overrun;
   motion.timeout += way / motion.speed - way / configured;
@@ -166,7 +167,7 @@ void Tapper::retreat(const Path& up, double sign, double zero, const tapping::He
 /// after the slow part.
 void Tapper::rise(const Path& up, double gently, double sign, const std::optional<double>& zero) {
   const double limit = largest_pull(up, 0.0);
-  if (sign != 0.0 && zero) guard_.expect_rise(MotionGuard::Rise{*zero, sign, limit});
+  if (sign != 0.0 && zero) guard_.expect_rise(MotionGuard::RiseLimits{*zero, sign, limit});
   const double clear = height() + gently;
   const double surely = clear + kExtraRise;
   // A pull is detected with the same delay as a contact, so the same limit of the speed applies.
@@ -175,10 +176,10 @@ void Tapper::rise(const Path& up, double gently, double sign, const std::optiona
                            std::max(reaction_.slowest(), reaction_.greatest_speed(motion_.threshold, stiffness))});
   Eigen::Vector3d force = seen_.endpoint->force;
   const auto set_free = [&] {
-    guard_.set_tare(force, MotionGuard::Zero::follows);
+    guard_.set_tare(force, MotionGuard::ZeroMode::follows);
     if (sign == 0.0) return;
     const double most = zero ? limit + kSpeedPull : motion_.threshold + kSpeedPull;
-    guard_.expect_rise(MotionGuard::Rise{zero.value_or(force.z()), sign, most, MotionGuard::Zero::follows});
+    guard_.expect_rise(MotionGuard::RiseLimits{zero.value_or(force.z()), sign, most, MotionGuard::ZeroMode::follows});
   };
   bool free = false;
   for (double along = 0.0; along < up.length();) {
@@ -230,7 +231,7 @@ Eigen::Vector3d Tapper::force_at_rest(const Joints& joints) {
     if (guard_.fresh()) readings.push_back(seen_.endpoint->force);
   }
   if (!enough()) {
-    throw Fault{"endpoint_state is published too rarely to measure the force at rest", Fault::Then::hold};
+    throw Fault{"endpoint_state is published too rarely to measure the force at rest", Fault::AllowedAction::hold};
   }
   return median(std::move(readings));
 }

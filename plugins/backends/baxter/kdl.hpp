@@ -9,7 +9,7 @@
 
 namespace palpate::baxter {
 
-inline KDL::Frame frame(const geometry::Step& step) {
+inline KDL::Frame frame(const geometry::JointTransform& step) {
   return {KDL::Rotation::RPY(step.roll, step.pitch, step.yaw), KDL::Vector(step.x, step.y, step.z)};
 }
 

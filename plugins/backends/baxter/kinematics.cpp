@@ -30,7 +30,7 @@ KDL::Chain left_arm(const Eigen::Vector3d& tip) {
 
 }  // namespace
 
-struct Arm::Chain {
+struct ArmKinematics::Chain {
   explicit Chain(const Eigen::Vector3d& tip) : arm(left_arm(tip)) {}
   KDL::Chain arm;
   KDL::ChainFkSolverPos_recursive forward{arm};
@@ -39,10 +39,10 @@ struct Arm::Chain {
                                     kAccuracy, kIterations};
 };
 
-Arm::Arm(const Eigen::Vector3d& tip) : chain_(std::make_unique<Chain>(tip)) {}
-Arm::~Arm() = default;
+ArmKinematics::ArmKinematics(const Eigen::Vector3d& tip) : chain_(std::make_unique<Chain>(tip)) {}
+ArmKinematics::~ArmKinematics() = default;
 
-Pose Arm::tip(const Joints& joints) const {
+Pose ArmKinematics::tip(const Joints& joints) const {
   KDL::Frame at;
   chain_->forward.JntToCart(array_of(joints), at);
   Pose out;
@@ -52,7 +52,7 @@ Pose Arm::tip(const Joints& joints) const {
   return out;
 }
 
-double Arm::vertical_stiffness(const Joints& joints) const {
+double ArmKinematics::vertical_stiffness(const Joints& joints) const {
   KDL::Jacobian jacobian(7);
   chain_->jacobian.JntToJac(array_of(joints), jacobian);
   double give = 0.0;  // m/N
@@ -60,7 +60,7 @@ double Arm::vertical_stiffness(const Joints& joints) const {
   return 1.0 / give;
 }
 
-std::optional<Joints> Arm::solve(const Pose& tip, const Joints& seed, double margin) const {
+std::optional<Joints> ArmKinematics::solve(const Pose& tip, const Joints& seed, double margin) const {
   const Eigen::Quaterniond& q = tip.rotation;
   const KDL::Frame goal(KDL::Rotation::Quaternion(q.x(), q.y(), q.z(), q.w()),
                         KDL::Vector(tip.position.x(), tip.position.y(), tip.position.z()));
@@ -84,7 +84,7 @@ Joints untucked() { return (Joints() << -0.08, -1.0, -1.19, 1.94, 0.67, 1.03, -0
 const Eigen::Quaterniond& straight_down() {
   // The untucked rotation without its tilt.
   static const Eigen::Quaterniond rotation = [] {
-    const Eigen::Quaterniond hand = Arm(Eigen::Vector3d::Zero()).tip(untucked()).rotation;
+    const Eigen::Quaterniond hand = ArmKinematics(Eigen::Vector3d::Zero()).tip(untucked()).rotation;
     return Eigen::Quaterniond(0.0, hand.x(), hand.y(), 0.0).normalized();
   }();
   return rotation;

@@ -17,14 +17,14 @@ constexpr double kHalfPi = 1.57079632679;  // rounded as in baxter.urdf
 
 /// Position of a joint in the frame of the previous joint, in metres, and its rotation as roll, pitch and yaw in
 /// radians.
-struct Step {
+struct JointTransform {
   double x, y, z, roll, pitch, yaw;
 };
 
 /// Transforms base -> torso -> left_arm_mount (kMount), then one transform per joint. Every joint rotates about its own
 /// z axis.
-constexpr Step kMount = {0.024645, 0.219645, 0.118588, 0, 0, 0.7854};
-constexpr Step kSteps[] = {
+constexpr JointTransform kMount = {0.024645, 0.219645, 0.118588, 0, 0, 0.7854};
+constexpr JointTransform kSteps[] = {
     {0.055695, 0, 0.011038, 0, 0, 0},            // s0
     {0.069, 0, 0.27035, -kHalfPi, 0, 0},         // s1
     {0.102, 0, 0, kHalfPi, 0, kHalfPi},          // e0
@@ -42,12 +42,12 @@ constexpr double kSprings[] = {843, 843, 843, 843, 250, 250, 250};
 
 /// The arm with a tool fixed to its flange (frame `left_hand`). Const methods may be called from several threads,
 /// except solve().
-class Arm {
+class ArmKinematics {
  public:
   /// `tip`: contact point of the tool in the frame left_hand, in metres. The z axis of left_hand points away from the
   /// forearm.
-  explicit Arm(const Eigen::Vector3d& tip);
-  ~Arm();
+  explicit ArmKinematics(const Eigen::Vector3d& tip);
+  ~ArmKinematics();
 
   /// Returns the position of the tip and the rotation of the hand, in the frame `base`.
   Pose tip(const Joints& joints) const;

@@ -10,7 +10,7 @@
 namespace palpate::baxter {
 namespace {
 
-using Then = Fault::Then;
+using AllowedAction = Fault::AllowedAction;
 using Button = StateReading::Button;
 
 /// Minimum set_speed_ratio: 0.27 * 1.5 rad/s (the maximum speed of a joint) = 0.4 rad/s, the largest speed that the
@@ -60,7 +60,8 @@ constexpr const char* kOwnSlowness =
 
 /// Returns a fault if `age` exceeds `most`. `gap`: seconds since the driver's last read. If the gap explains the age,
 /// the fault blames this computer.
-std::optional<Fault> stale_fault(const char* stream, double age, double most, double gap, Then then = Then::silence) {
+std::optional<Fault> stale_fault(const char* stream, double age, double most, double gap,
+                                 AllowedAction then = AllowedAction::silence) {
   if (age <= most) return std::nullopt;
   if (gap > most && age <= gap + most) {
     return Fault{fmt::format("this computer could not serve the arm for {:.2f} s{}", gap, kOwnSlowness), then};
@@ -69,7 +70,8 @@ std::optional<Fault> stale_fault(const char* stream, double age, double most, do
                then};
 }
 
-std::optional<Fault> lateness_fault(const char* stream, const Arrival& arrival, MotionGuard::Delay& best, Then then) {
+std::optional<Fault> lateness_fault(const char* stream, const MessageArrival& arrival, MotionGuard::Delay& best,
+                                    AllowedAction then) {
   const double delay = arrival.received - arrival.stamp;
   if (!std::isfinite(delay)) return Fault{fmt::format("{} has a time stamp that is not a number", stream), then};
   // Unsynchronised clocks drift apart by more than kLate within hours, so the smallest delay may grow slowly.
@@ -87,17 +89,17 @@ constexpr const char* kJoints = "/robot/joint_states of the left arm";
 constexpr const char* kEndpoint = "endpoint_state of the left arm";
 
 /// Returns a fault if two nodes send the same stream. Checks only the streams whose fault has the action `then`.
-std::optional<Fault> duplicate_sender_fault(const Senders& senders, Then then) {
+std::optional<Fault> duplicate_sender_fault(const Senders& senders, AllowedAction then) {
   const struct {
     const char* stream;
     const std::vector<std::string>& nodes;
-    Then then;
-  } streams[] = {{"/robot/state", senders.state, Then::silence},
-                 {kJoints, senders.joints, Then::silence},
-                 {"/clock", senders.clock, Then::silence},
-                 {kEndpoint, senders.endpoint, Then::hold},
-                 {"collision_detection_state of the left arm", senders.collision, Then::hold},
-                 {"collision_avoidance_state of the left arm", senders.avoidance, Then::hold}};
+    AllowedAction then;
+  } streams[] = {{"/robot/state", senders.state, AllowedAction::silence},
+                 {kJoints, senders.joints, AllowedAction::silence},
+                 {"/clock", senders.clock, AllowedAction::silence},
+                 {kEndpoint, senders.endpoint, AllowedAction::hold},
+                 {"collision_detection_state of the left arm", senders.collision, AllowedAction::hold},
+                 {"collision_avoidance_state of the left arm", senders.avoidance, AllowedAction::hold}};
   for (const auto& one : streams) {
     if (one.then != then || one.nodes.size() < 2) continue;
     return Fault{fmt::format("{} comes from more than one node, {}: end the node that is not the robot", one.stream,
@@ -179,21 +181,21 @@ std::optional<Fault> MotionGuard::rate_fault(const Snapshot& seen) const {
     return fmt::format("{} times in the last {:.1f} s, {} are needed", times, ReadingCounter::kWindow, needed);
   };
   if (looks < ReadingCounter::kFewest && !seen.simulated) {
-    return Fault{fmt::format("this computer served the arm {}{}", in_window(looks), kOwnSlowness), Then::hold};
+    return Fault{fmt::format("this computer served the arm {}{}", in_window(looks), kOwnSlowness), AllowedAction::hold};
   }
   const int fewest = seen.simulated ? std::min(ReadingCounter::kFewest, looks / 2) : ReadingCounter::kFewest;
   for (const auto& [name, stream] : {std::pair{kJoints, &joint_stream_}, std::pair{kEndpoint, &endpoint_stream_}}) {
     if (stream->count() >= fewest) continue;
     return Fault{fmt::format("{} arrived only {}: check the network, and that /robot/joint_state_publish_rate is 100",
                              name, in_window(stream->count())),
-                 Then::hold};
+                 AllowedAction::hold};
   }
   const int needed = std::min(fewest, renewals_.needed());
   if (renewals_.count() >= needed) return std::nullopt;
   return Fault{fmt::format("endpoint_state arrived {} times, but with a new force only {}: contacts would be detected "
                            "too late. Check what filters or repeats the force, or restart the robot",
                            endpoint_stream_.count(), in_window(renewals_.count(), needed)),
-               Then::hold};
+               AllowedAction::hold};
 }
 
 /// Checks the rules whose violation forbids every set-point, even the measured joints.
@@ -202,7 +204,7 @@ std::optional<Fault> MotionGuard::check_state(const Snapshot& seen, bool moving,
   if (!seen.state || !seen.joints || !seen.endpoint) return Fault{"joints, endpoint and state were not all received"};
   if (auto fault = stale_fault("/robot/state", seen.now - seen.state->received, kStateFresh, gap)) return fault;
   if (auto fault = state_fault(*seen.state, seen.joints, moving)) return fault;
-  if (auto fault = duplicate_sender_fault(seen.senders, Then::silence)) return fault;
+  if (auto fault = duplicate_sender_fault(seen.senders, AllowedAction::silence)) return fault;
   if (!seen.commanders.empty()) {
     return Fault{fmt::format("the arm is also commanded by {}: end that program first", join_words(seen.commanders))};
   }
@@ -214,15 +216,16 @@ std::optional<Fault> MotionGuard::check_state(const Snapshot& seen, bool moving,
 /// Checks the rules after whose violation the arm may still be held, because its position is known.
 std::optional<Fault> MotionGuard::check_force_data(const Snapshot& seen, double gap) {
   const EndpointReading& endpoint = *seen.endpoint;
-  if (auto fault = duplicate_sender_fault(seen.senders, Then::hold)) return fault;
-  if (auto fault = stale_fault(kEndpoint, seen.now - endpoint.received, kFresh, gap, Then::hold)) return fault;
+  if (auto fault = duplicate_sender_fault(seen.senders, AllowedAction::hold)) return fault;
+  if (auto fault = stale_fault(kEndpoint, seen.now - endpoint.received, kFresh, gap, AllowedAction::hold)) return fault;
   if (!endpoint.force.allFinite() || !endpoint.pose.position.allFinite()) {
-    return Fault{"endpoint_state has a force or a position that is not a number: restart the robot", Then::hold};
+    return Fault{"endpoint_state has a force or a position that is not a number: restart the robot",
+                 AllowedAction::hold};
   }
   if (!endpoint.force.isZero(0.0)) return std::nullopt;
   return Fault{
       "endpoint_state has a force of exactly zero: this robot, perhaps a Gazebo simulation, measures no forces",
-      Then::hold};
+      AllowedAction::hold};
 }
 
 /// Checks settings that other programs left on the robot and that change how it follows set-points.
@@ -230,7 +233,7 @@ std::optional<Fault> MotionGuard::check_settings(const Snapshot& seen) {
   constexpr double kAny = std::numeric_limits<double>::infinity();
   const struct {
     const char* topic;
-    const std::optional<Setting>& setting;
+    const std::optional<ReceivedSetting>& setting;
     double least, most;
     const char* reason;
     const char* own;
@@ -241,7 +244,7 @@ std::optional<Fault> MotionGuard::check_settings(const Snapshot& seen) {
     if (!setting || (setting->value >= least && setting->value <= most)) continue;
     return Fault{fmt::format("{0}: {1} has set it to {2:g}{3}: set it to {4}, on /robot/limb/left/{0}", topic,
                              setting->sender, setting->value, reason, own),
-                 Then::hold};
+                 AllowedAction::hold};
   }
   return std::nullopt;
 }
@@ -260,17 +263,19 @@ std::optional<Fault> MotionGuard::check(const Snapshot& seen, const Eigen::Vecto
   if (const int joint = beyond_limits(seen.joints->position, 0.0); joint >= 0) {
     return Fault{fmt::format("{} is at {:.1f} deg, beyond its limit: move the arm by hand",
                              kJointNames[static_cast<std::size_t>(joint)], degrees(seen.joints->position(joint))),
-                 Then::hold};
+                 AllowedAction::hold};
   }
   const std::string breach = workspace_.breach(tip);
-  if (!breach.empty()) return Fault{breach + ": check that position and tool agree with the config", Then::hold};
+  if (!breach.empty())
+    return Fault{breach + ": check that position and tool agree with the config", AllowedAction::hold};
   if (auto fault = check_following(seen)) return fault;
   if (!motion_.collision_expected && seen.collision && seen.collision->collision) return reflex_fault(seen, tip);
   return check_force(seen, tip);
 }
 
 std::optional<Fault> MotionGuard::check_joints(const Snapshot& seen) {
-  if (auto fault = lateness_fault("/robot/joint_states", *seen.joints, joint_delay_, Then::silence)) return fault;
+  if (auto fault = lateness_fault("/robot/joint_states", *seen.joints, joint_delay_, AllowedAction::silence))
+    return fault;
   const double jump = motion_.joints ? (seen.joints->position - motion_.joints->position).cwiseAbs().maxCoeff() : 0.0;
   if (jump > kJump) {
     return Fault{fmt::format(
@@ -281,7 +286,7 @@ std::optional<Fault> MotionGuard::check_joints(const Snapshot& seen) {
 }
 
 std::optional<Fault> MotionGuard::check_endpoint(const Snapshot& seen, double gap) {
-  if (auto fault = lateness_fault("endpoint_state", *seen.endpoint, endpoint_delay_, Then::hold)) return fault;
+  if (auto fault = lateness_fault("endpoint_state", *seen.endpoint, endpoint_delay_, AllowedAction::hold)) return fault;
   if (auto fault = check_frozen(*seen.endpoint, seen.now)) return fault;
   return check_collision_stream(seen, gap);
 }
@@ -295,7 +300,8 @@ std::optional<Fault> MotionGuard::check_collision_stream(const Snapshot& seen, d
     collision_received_ = received;
   }
   if (!collision_streams_) return std::nullopt;
-  return stale_fault("collision_detection_state of the left arm", seen.now - received, kStateFresh, gap, Then::hold);
+  return stale_fault("collision_detection_state of the left arm", seen.now - received, kStateFresh, gap,
+                     AllowedAction::hold);
 }
 
 std::optional<Fault> MotionGuard::check_following(const Snapshot& seen) const {
@@ -303,12 +309,12 @@ std::optional<Fault> MotionGuard::check_following(const Snapshot& seen) const {
   const Joints& now = seen.joints->position;
   const auto from = [&](const Joints& target) { return (now - target).cwiseAbs().maxCoeff(); };
   double nearest = std::numeric_limits<double>::infinity();
-  for (const Sent& one : motion_.sent) nearest = std::min(nearest, from(one.target));
+  for (const SentCommand& one : motion_.sent) nearest = std::min(nearest, from(one.target));
   const double behind = from(motion_.sent.back().target);
   if (behind <= kFollowing && nearest <= kOffTheWay) return std::nullopt;
   return Fault{fmt::format("the arm does not follow: a joint is {:.1f} deg from its target{}", degrees(behind),
                            explain_lag(now, seen.now)),
-               Then::hold};
+               AllowedAction::hold};
 }
 
 /// Explains why the arm is behind its set-point: too slow, or blocked. The decision uses the speed of the joint that is
@@ -316,9 +322,9 @@ std::optional<Fault> MotionGuard::check_following(const Snapshot& seen) const {
 std::string MotionGuard::explain_lag(const Joints& now, double time) const {
   constexpr double kRecent = 0.2;    // s over which the speed is measured
   constexpr double kTurning = 0.05;  // rad/s: a blocked joint rotates slower
-  const Sent& last = motion_.sent.back();
-  const Sent& then = *std::find_if(motion_.sent.begin(), motion_.sent.end() - 1,
-                                   [&](const Sent& one) { return one.time >= time - kRecent; });
+  const SentCommand& last = motion_.sent.back();
+  const SentCommand& then = *std::find_if(motion_.sent.begin(), motion_.sent.end() - 1,
+                                          [&](const SentCommand& one) { return one.time >= time - kRecent; });
   Eigen::Index joint = 0;
   (last.target - now).cwiseAbs().maxCoeff(&joint);
   const double taken = std::max(time - then.time, 1e-3);

@@ -19,13 +19,13 @@ namespace palpate::baxter {
 /// A broken safety rule: its reason, the action that is still allowed, and whether the run must end.
 struct Fault {
   /// Allowed actions after a fault, from least to most motion.
-  enum class Then {
+  enum class AllowedAction {
     silence,  ///< send nothing: the arm holds by itself, or another program commands it
     hold,     ///< send the measured joints for a moment, then nothing
     retreat,  ///< hold; when the arm rests and all other rules hold, go straight up
   };
   std::string reason;  ///< cause and remedy, one line
-  Then then = Then::silence;
+  AllowedAction then = AllowedAction::silence;
   bool ends_run = true;
   bool reflex = false;  ///< whether the firmware's own reflex stopped the arm; the reflex ends by itself
 };
@@ -50,7 +50,7 @@ class ReadingCounter {
   static constexpr int kFewest = 25;
 
   /// Takes the latest reading at time `now` (s). Returns whether its stamp differs from that of the previous one.
-  bool take(const Arrival& arrival, double now) {
+  bool take(const MessageArrival& arrival, double now) {
     while (!readings_.empty() && readings_.front().time < now - kWindow - kSlack) readings_.pop_front();
     if (stamp_ == arrival.stamp) return false;
     stamp_ = arrival.stamp;
@@ -58,8 +58,8 @@ class ReadingCounter {
     return true;
   }
 
-  /// Returns the number of new readings within the last kWindow seconds. If Arrival::count is set, messages that were
-  /// replaced between two reads are included.
+  /// Returns the number of new readings within the last kWindow seconds. If MessageArrival::count is set, messages that
+  /// were replaced between two reads are included.
   int count() const {
     if (readings_.empty()) return 0;
     const long counted = readings_.back().count - readings_.front().count + 1;
@@ -159,9 +159,9 @@ class MotionGuard {
   /// Kind of the reference of force_stop. With `stays`, the reference is constant, as in a tap. With `follows`, it
   /// follows the force, because the bias changes with the pose. Only changes within kZeroFollows seconds then stop the
   /// arm.
-  enum class Zero { stays, follows };
+  enum class ZeroMode { stays, follows };
   /// Sets the force (N) that is the reference of force_stop. Before the first call no force stops the arm.
-  void set_tare(const Eigen::Vector3d& force, Zero zero = Zero::stays) {
+  void set_tare(const Eigen::Vector3d& force, ZeroMode zero = ZeroMode::stays) {
     motion_.tare = force;
     zero_ = zero;
   }
@@ -173,14 +173,14 @@ class MotionGuard {
   /// During a rise, friction of 0.4 Nm appears as a pull of up to 13 N. So once the arm rises freely, the zero is
   /// measured again and `follows` the force. The change of the zero is limited to kMostDrift * (height of the rise),
   /// the largest effect of a changing pose. A larger change is the force of a spring.
-  struct Rise {
+  struct RiseLimits {
     double zero;
     double sign;
     double limit;
-    Zero follows = Zero::stays;
+    ZeroMode follows = ZeroMode::stays;
   };
   /// Sets the limits until begin() or the next call; nullopt: the arm does not rise.
-  void expect_rise(const std::optional<Rise>& rise) {
+  void expect_rise(const std::optional<RiseLimits>& rise) {
     motion_.rise = rise;
     motion_.anchor.reset();
     motion_.pulled = 0;
@@ -229,26 +229,26 @@ class MotionGuard {
   std::optional<Fault> check_pull(const Snapshot& seen, const Eigen::Vector3d& tip, double since);
   std::optional<Fault> check_force(const Snapshot& seen, const Eigen::Vector3d& tip);
 
-  struct Sent {
+  struct SentCommand {
     double time;
     Joints target;
     Joints arm;  ///< measured joints at that time
   };
   /// State that begin() resets.
   struct Motion {
-    std::deque<Sent> sent;
+    std::deque<SentCommand> sent;
     std::deque<double> looks;            ///< times of reads within ReadingCounter::kWindow
     double began = 0.0;                  ///< time of the first read
     std::optional<JointReading> joints;  ///< previous reading
     std::optional<double> felt_at;       ///< time of the last read with a new force
     std::optional<Eigen::Vector3d> tare;
     int too_strong = 0;
-    std::optional<Rise> rise;
+    std::optional<RiseLimits> rise;
     /// Zero (N) and height (m) at the time when the zero began to follow the force.
-    struct Anchor {
+    struct ZeroReference {
       double zero, height;
     };
-    std::optional<Anchor> anchor;
+    std::optional<ZeroReference> anchor;
     int pulled = 0;  ///< number of consecutive readings with a pull above the limit
     bool collision_expected = false;
   };
@@ -256,7 +256,7 @@ class MotionGuard {
   Workspace workspace_;
   double force_stop_;
   Motion motion_;
-  Zero zero_ = Zero::stays;
+  ZeroMode zero_ = ZeroMode::stays;
   ReadingCounter joint_stream_;
   ReadingCounter endpoint_stream_;
   Renewals renewals_;

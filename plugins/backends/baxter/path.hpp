@@ -62,7 +62,7 @@ using Inverse = std::function<std::optional<Joints>(const Pose& tip, const Joint
 /// Plans paths in the frame of the scene. Methods throw NoPath.
 class Planner {
  public:
-  Planner(const ScenePoseOptions& place, const Arm& arm, Inverse inverse)
+  Planner(const ScenePoseOptions& place, const ArmKinematics& arm, Inverse inverse)
       : frame_(place.frame()), arm_(arm), inverse_(std::move(inverse)) {}
 
   /// Returns the pose in `base` of a tool that points straight down at the scene position `place` and `height` (m).
@@ -93,7 +93,7 @@ class Planner {
   Path vertical(const Joints& from, Pose tip, double rise, const char* way) const;
 
   Eigen::Isometry3d frame_;  ///< pose of the scene's frame in `base`
-  const Arm& arm_;
+  const ArmKinematics& arm_;
   Inverse inverse_;
 };
 

@@ -11,7 +11,7 @@
 namespace palpate::baxter {
 namespace {
 
-using Then = Fault::Then;
+using AllowedAction = Fault::AllowedAction;
 
 constexpr double kLimitMargin = 0.03;      ///< rad: margin of planned joints to their limits
 constexpr double kReachSpacing = 0.02;     ///< m between the positions of a dry run
@@ -31,7 +31,7 @@ std::string fine_centimetres(double length) { return fmt::format("{:.2f} cm", 10
 /// Compares the driver's own kinematics with the robot's pose of left_gripper. Throws Error if they disagree, or if
 /// left_gripper is not at the configured distance.
 void check_gripper(const JointReading& joints, const EndpointReading& endpoint, double gripper) {
-  const Pose hand = Arm(Eigen::Vector3d::Zero()).tip(joints.position);
+  const Pose hand = ArmKinematics(Eigen::Vector3d::Zero()).tip(joints.position);
   const Eigen::Vector3d seen = hand.rotation.inverse() * (endpoint.pose.position - hand.position);
   const double aside = std::hypot(seen.x(), seen.y());
   const double turned = hand.rotation.angularDistance(endpoint.pose.rotation);
@@ -53,7 +53,7 @@ void check_gripper(const JointReading& joints, const EndpointReading& endpoint, 
 std::vector<std::string> check_settings(const Snapshot& seen) {
   const struct {
     const char* topic;
-    const std::optional<Setting>& setting;
+    const std::optional<ReceivedSetting>& setting;
     const char* own;
   } settings[] = {{"set_speed_ratio", seen.speed_ratio, "0.3"},
                   {"joint_command_timeout", seen.command_timeout, "0.2 s"}};
@@ -213,7 +213,7 @@ std::optional<Joints> Tapper::inverse(const Pose& tip, const Joints& seed) {
     return arm_.solve(tip, seed, kLimitMargin);
   }
   // Planning needs many poses, and the robot's service may take a second per pose.
-  if (interrupted()) throw Fault{"interrupted", Then::silence, false};
+  if (interrupted()) throw Fault{"interrupted", AllowedAction::silence, false};
   const Eigen::Vector3d offset(0.0, 0.0, options_.tool.gripper);
   const std::optional<Joints> answer = robot_.solve(
       {tip.position + tip.rotation * (offset - Eigen::Map<const Eigen::Vector3d>(options_.tool.tip)), tip.rotation},

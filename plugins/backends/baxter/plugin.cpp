@@ -129,8 +129,8 @@ class Baxter final : public Backend {
   ArmLock arm_;  ///< held while connected
   std::unique_ptr<Robot> robot_;
   Tapper tapper_;
-  std::unique_ptr<View> view_;  ///< declared after robot_, so destroyed before it
-  bool begun_ = false;          ///< true from the first tap on
+  std::unique_ptr<SpectatorDisplay> view_;  ///< declared after robot_, so destroyed before it
+  bool begun_ = false;                      ///< true from the first tap on
 };
 
 PALPATE_PLUGIN(Backend, Baxter, "baxter", "left arm of a Baxter robot, over ROS 1")

@@ -35,7 +35,7 @@ void keep(std::deque<Value>& values, Value value, std::size_t most) {
 }
 
 /// Line through heights over time, fitted by least squares.
-struct Line {
+struct HeightLine {
   double height, time;  ///< m and s of the centre
   double velocity;      ///< m/s
   double at(double other) const { return height + velocity * (other - time); }
@@ -55,8 +55,8 @@ Periods last_free(const Periods& periods, double free_down_to) {
   return out;
 }
 
-Line fit(const Periods& periods) {
-  Line out{0.0, 0.0, 0.0};
+HeightLine fit(const Periods& periods) {
+  HeightLine out{0.0, 0.0, 0.0};
   const auto count = static_cast<double>(periods.size());
   for (const ReactionTime::Period& one : periods) {
     out.time += one.time / count;
@@ -75,7 +75,7 @@ Line fit(const Periods& periods) {
 /// Returns the slope of the force at the detection, N/s, from the speed with which the tip falls behind `descent`. If
 /// the positions do not show the deflection of the springs, the slope is the threshold divided by the time since the
 /// onset at height `began`.
-double rise(const Periods& periods, double began, const Line& descent, double threshold, double stiffness) {
+double rise(const Periods& periods, double began, const HeightLine& descent, double threshold, double stiffness) {
   const ReactionTime::Period& notice = periods.back();
   const double rigid = stiffness * std::abs(descent.velocity);
   Periods behind;
@@ -96,12 +96,12 @@ void ReactionTime::late(double seconds, double now) {
   late_at_ = now;
 }
 
-void ReactionTime::learn_trailing(const std::vector<Step>& motion) {
+void ReactionTime::learn_trailing(const std::vector<MotionSample>& motion) {
   if (motion.size() < 2) return;
   const Eigen::Vector3d way = motion.back().commanded - motion.front().commanded;
   if (way.norm() < kShortestWay) return;
   const Eigen::Vector3d along = way.normalized();
-  const auto behind = [&](const Step& one) { return along.dot(one.commanded - one.reached); };
+  const auto behind = [&](const MotionSample& one) { return along.dot(one.commanded - one.reached); };
   const double at_begin = behind(motion.front());
   const double at_end = behind(motion.back());
   double area = 0.0;
@@ -120,7 +120,7 @@ void ReactionTime::learn_noticing(const Periods& periods, std::optional<double> 
   const double softest = notice.height + threshold / tapping::GuardedTap::kSoftest;
   const Periods free = last_free(periods, std::max(began.value_or(softest), softest));
   if (free.empty()) return;
-  const Line descent = fit(free);
+  const HeightLine descent = fit(free);
   double reached = notice.time;  // time when the true force reached the threshold
   for (auto it = periods.rbegin(); it != periods.rend(); ++it) {
     if (stiffness * (it->height - descent.at(it->time)) < threshold) break;
@@ -132,13 +132,13 @@ void ReactionTime::learn_noticing(const Periods& periods, std::optional<double> 
 
 /// Returns the standard deviation of a contact's delay, s. If the force is renewed rarely, the threshold may have been
 /// crossed up to one renewal earlier.
-double ReactionTime::deviation(const Notice& one) const {
+double ReactionTime::deviation(const ContactDetection& one) const {
   return std::hypot(kNoise / std::max(one.rise, 1e-3), renewal_ / std::sqrt(12.0));
 }
 
 /// Returns the sum of the inverse variances of the contacts, 1/s^2.
 double ReactionTime::weight() const {
-  return std::accumulate(noticing_.begin(), noticing_.end(), 0.0, [this](double sum, const Notice& one) {
+  return std::accumulate(noticing_.begin(), noticing_.end(), 0.0, [this](double sum, const ContactDetection& one) {
     return sum + 1.0 / (deviation(one) * deviation(one));
   });
 }
@@ -151,7 +151,7 @@ double ReactionTime::noticing() const {
   if (noticing_.empty()) return least + kFirst;
   double sum = kFirstWeight * least;
   double surely = 0.0;
-  for (const Notice& one : noticing_) {
+  for (const ContactDetection& one : noticing_) {
     sum += one.seconds / (deviation(one) * deviation(one));
     surely = std::max(surely, one.seconds - 2.0 * deviation(one));
   }

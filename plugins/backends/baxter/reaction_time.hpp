@@ -59,7 +59,7 @@ class ReactionTime {
   void renewed_every(double seconds) { renewal_ = seconds; }
 
   /// Commanded and measured position of the tip in one period of a free motion from rest to rest, metres.
-  struct Step {
+  struct MotionSample {
     double time;  ///< s
     Eigen::Vector3d commanded;
     Eigen::Vector3d reached;
@@ -68,7 +68,7 @@ class ReactionTime {
   /// Learns the trailing time from a motion along a straight line. The area between the commanded and the measured
   /// position as functions of time, divided by the length, is the mean delay. This holds for any linear system and any
   /// velocity profile. Offsets at rest are subtracted. Motions shorter than kShortestWay are ignored.
-  void learn_trailing(const std::vector<Step>& motion);
+  void learn_trailing(const std::vector<MotionSample>& motion);
 
   /// Learns the noticing time from a contact that was detected in the last of `periods`. `began` is the height (m)
   /// where the contact began, if known. `stiffness` is in N/m, `threshold` in N. Descents that are too short are
@@ -100,15 +100,15 @@ class ReactionTime {
 
  private:
   /// Delay of the detection of a contact, s, and slope of its force at that moment, N/s.
-  struct Notice {
+  struct ContactDetection {
     double seconds;
     double rise;
   };
 
-  double deviation(const Notice& one) const;
+  double deviation(const ContactDetection& one) const;
   double weight() const;
 
-  std::deque<Notice> noticing_;
+  std::deque<ContactDetection> noticing_;
   std::deque<double> trailing_;
   double late_ = 0.0;
   double late_at_ = 0.0;

@@ -27,7 +27,7 @@ struct Pose {
 
 /// Times of a message in seconds: reception and the sender's stamp. The two clocks may differ by seconds. So ages are
 /// computed from `received`, and stamps only show that the sender is alive.
-struct Arrival {
+struct MessageArrival {
   double received = 0.0;
   double stamp = 0.0;
   /// Number of messages of this stream so far, including this one. An unchanged count means the same message; an
@@ -36,13 +36,13 @@ struct Arrival {
 };
 
 /// Joint positions of the left arm, from any message of joint_states that has them. Values may be NaN, as received.
-struct JointReading : Arrival {
+struct JointReading : MessageArrival {
   Joints position;
 };
 
 /// Pose of the robot's frame left_gripper in `base`, and the force that the robot estimates from the springs in its
 /// joints, newtons. Rethink documents neither frame nor sign of the force.
-struct EndpointReading : Arrival {
+struct EndpointReading : MessageArrival {
   Pose pose;
   Eigen::Vector3d force;
   /// Number of messages of this stream whose force differs from that of the previous message. A robot may send the same
@@ -70,23 +70,23 @@ struct StateReading {
   bool error = false;
   enum class Button { unpressed, pressed, unknown, released } estop_button = Button::unpressed;
   enum class Source { none, user, unknown, fault, brain } estop_source = Source::none;
-  long count = 0;  ///< see Arrival::count
+  long count = 0;  ///< see MessageArrival::count
 };
 
 /// Collision detection of the firmware. After a collision the arm holds for two seconds, then moves on by itself.
-struct CollisionReading : Arrival {
+struct CollisionReading : MessageArrival {
   bool collision = false;
 };
 
 /// Obstacles of the robot's own collision avoidance, which pushes the arm away from them.
-struct AvoidanceReading : Arrival {
+struct AvoidanceReading : MessageArrival {
   bool other_arm = false;            ///< the right arm is an obstacle
   std::vector<std::string> objects;  ///< other obstacles by the robot's names: torso, pedestal
 };
 
 /// Setting that another program sent and that the robot keeps after that program has ended. A setting is received only
 /// while its sender runs, so an absent setting may still be in force.
-struct Setting {
+struct ReceivedSetting {
   double value = 0.0;
   std::string sender;  ///< node name
 };
@@ -115,8 +115,8 @@ struct Snapshot {
   std::optional<StateReading> state;
   std::optional<CollisionReading> collision;
   std::optional<AvoidanceReading> avoidance;
-  std::optional<Setting> speed_ratio;      ///< factor by which the robot slows set-points down, 0 to 1; default 0.3
-  std::optional<Setting> command_timeout;  ///< s for which the robot follows a set-point; default 0.2
+  std::optional<ReceivedSetting> speed_ratio;  ///< factor by which the robot slows set-points down, 0 to 1; default 0.3
+  std::optional<ReceivedSetting> command_timeout;  ///< s for which the robot follows a set-point; default 0.2
   EndEffector end_effector;
   /// Longest time for which this program could not receive messages, s of real time. It includes the current gap and
   /// those that ended within the last second. During a gap messages may have been sent.

@@ -15,7 +15,7 @@ namespace {
 using tapping::centimetres;
 using tapping::newtons;
 using ForceSign = BaxterOptions::ForceSign;
-using Then = Fault::Then;
+using AllowedAction = Fault::AllowedAction;
 
 constexpr double kStepClamp = 0.05;          ///< rad: a set-point must be this near to the last one or to the arm
 constexpr double kArrivalTolerance = 0.015;  ///< rad: settled errors are up to 0.008
@@ -116,14 +116,14 @@ tapping::HeightResult Tapper::attempt(const TapRequest& request) {
 /// Moves the origin of the scene to the measured height of the bare desk.
 void Tapper::calibrate(const tapping::HeightResult& contact) {
   if (contact.outcome != Outcome::contact) {
-    throw Fault{"the calibration tap found no desk: " + contact.reason, Then::hold};
+    throw Fault{"the calibration tap found no desk: " + contact.reason, AllowedAction::hold};
   }
   const double off = contact.height - scene_.desk();
   if (std::abs(off) > options_.calibration->tolerance) {
     throw Fault{fmt::format("the calibration tap found the desk {} {} than scene_pose.height: measure again, check "
                             "that nothing lies there, or raise calibration.tolerance",
                             centimetres(std::abs(off)), off > 0.0 ? "higher" : "lower"),
-                Then::hold};
+                AllowedAction::hold};
   }
   planner_.raise(off);
   calibrated_ = true;
@@ -140,7 +140,7 @@ void Tapper::go_to(const Joints& hover) {
   const Path across = planner_.line(up.end(), hover);
   expect_readiness();  // the robot's inverse kinematics takes time
   next_ = seen_.now;
-  guard_.set_tare(force_at_rest(start), MotionGuard::Zero::follows);
+  guard_.set_tare(force_at_rest(start), MotionGuard::ZeroMode::follows);
   climb(up, sign_, {});
   motion_log_.emplace();
   follow(across, motion_.travel_speed, across.length());
@@ -161,7 +161,7 @@ void Tapper::await_height(const Joints& top) {
   const double begin = seen_.now;
   while (height() < travel_height() - kNearTravel) {
     if (seen_.now > begin + kSettlingTimeout) {
-      throw Fault{"the arm did not reach the height of travel: check what holds it", Then::hold};
+      throw Fault{"the arm did not reach the height of travel: check what holds it", AllowedAction::hold};
     }
     step(top);
   }
@@ -188,24 +188,24 @@ void Tapper::settle(const Joints& goal) {
     }
     if (seen_.now - since >= kRestTime && (now - goal).cwiseAbs().maxCoeff() < kArrivalTolerance) return;
   }
-  throw Fault{"the arm did not come to rest at its target: check what holds it", Then::hold};
+  throw Fault{"the arm did not come to rest at its target: check what holds it", AllowedAction::hold};
 }
 
 void Tapper::expect_readiness() {
   await_readiness(true);
   std::optional<Fault> fault = MotionGuard::check_readiness(seen_, true);
   if (!fault) return;
-  fault->then = Then::silence;  // the arm rests, and no set-point has been sent
+  fault->then = AllowedAction::silence;  // the arm rests, and no set-point has been sent
   throw *fault;
 }
 
 /// Executes one period: sends the set-point, waits, reads, and checks all rules. Throws Fault.
 void Tapper::step(const Joints& command) {
-  if (!recovering_ && interrupted()) throw Fault{"interrupted", Then::retreat, false};
+  if (!recovering_ && interrupted()) throw Fault{"interrupted", AllowedAction::retreat, false};
   const auto jump = [&](const Joints& from) { return (command - from).cwiseAbs().maxCoeff() > kStepClamp; };
   if (!command.allFinite() ||
       (jump(seen_.joints->position) && jump(guard_.last_sent().value_or(seen_.joints->position)))) {
-    throw Fault{"a set-point would have jumped", Then::hold};
+    throw Fault{"a set-point would have jumped", AllowedAction::hold};
   }
   robot_.command(command);
   guard_.record_command(seen_.now, command);
@@ -231,7 +231,7 @@ void Tapper::store(Snapshot seen) {
 
 /// Executes the action that the fault allows. Returns a phrase with the final state of the arm.
 std::string Tapper::recover(const Fault& fault) {
-  if (fault.then == Then::silence) return kSilent;
+  if (fault.then == AllowedAction::silence) return kSilent;
   const auto silent = [](const Fault& other) { return std::string(kSilent) + ": " + other.reason; };
   const auto where = [&] { return "the arm holds " + centimetres(height() - scene_.desk()) + " above the desk"; };
   recovering_ = true;
@@ -239,7 +239,7 @@ std::string Tapper::recover(const Fault& fault) {
   const double sign = sign_ != 0.0 ? sign_ : std::copysign(1.0, seen_.endpoint->force.z() - zero_.z());
   const auto presses = [&] { return sign * (seen_.endpoint->force.z() - zero_.z()); };
   if (const auto other = hold_through_reflex(fault)) return silent(*other);
-  if (fault.then == Then::hold) return where();
+  if (fault.then == AllowedAction::hold) return where();
   try {
     for (int attempt = 1;; ++attempt) {
       try {
@@ -250,14 +250,14 @@ std::string Tapper::recover(const Fault& fault) {
         settle(*guard_.last_sent());
         return "the arm was raised to the height of travel";
       } catch (const Fault& again) {
-        const bool pulled = again.then == Then::hold || presses() < -kFrictionPull;
+        const bool pulled = again.then == AllowedAction::hold || presses() < -kFrictionPull;
         if (!again.reflex || pulled || attempt == kMaxReflexes) throw;
       }
     }
   } catch (const NoPath& none) {
     return where() + ", it could not be raised: " + none.reason;
   } catch (const Fault& other) {
-    if (other.then == Then::silence) return silent(other);
+    if (other.then == AllowedAction::silence) return silent(other);
     if (const auto another = hold_through_reflex(other)) return silent(*another);
     return where() + ", it was not raised: " + other.reason;
   }
@@ -267,11 +267,11 @@ std::string Tapper::recover(const Fault& fault) {
 /// after the reflex, at its new position. Its springs then pull less.
 std::optional<Fault> Tapper::hold_through_reflex(const Fault& fault) {
   if (const auto other = hold(seen_.joints->position)) return other;
-  if (!fault.reflex || fault.then != Then::hold) return std::nullopt;
+  if (!fault.reflex || fault.then != AllowedAction::hold) return std::nullopt;
   try {
     await_reflex_end();
   } catch (const Fault& other) {
-    if (other.then == Then::silence) return other;
+    if (other.then == AllowedAction::silence) return other;
   }
   return hold(seen_.joints->position);
 }
@@ -297,7 +297,7 @@ std::optional<Fault> Tapper::hold(Joints joints) {
     robot_.command(joints);
     if (!next_period()) return standstill();
     std::optional<Fault> fault = guard_.check(seen_, tip_);
-    if (fault && fault->then == Then::silence) return fault;
+    if (fault && fault->then == AllowedAction::silence) return fault;
   }
   return std::nullopt;
 }

@@ -83,7 +83,7 @@ class Tapper {
   double largest_pull(const Path& way, double along) const;
   static double rotation_per_metre(const Path& way, double along);
   double stiffness_at(const Target& place) const;
-  double greatest_speed(double threshold, double stiffness, Fault::Then then) const;
+  double greatest_speed(double threshold, double stiffness, Fault::AllowedAction then) const;
   void update_timing();
   tapping::MotionOptions bounded(tapping::MotionOptions motion, double stiffness) const;
   void learn_moving(double difference);
@@ -115,7 +115,7 @@ class Tapper {
   Robot& robot_;
   const std::atomic<bool>* interrupted_;
   std::function<void(const std::string&)> note_;
-  Arm arm_;
+  ArmKinematics arm_;
   Planner planner_;
   Workspace workspace_;
   MotionGuard guard_;
@@ -136,8 +136,8 @@ class Tapper {
   std::optional<double> friction_;  ///< Nm of friction per joint, once measured
   double shown_sign_ = 0.0;         ///< sign of the force at the last accepted contact; 0 if not determined
   ReactionTime reaction_;
-  std::optional<std::vector<ReactionTime::Step>> motion_log_;  ///< receives every period if present
-  int logged_ = 0;                                             ///< number of taps for which moving_ was logged
+  std::optional<std::vector<ReactionTime::MotionSample>> motion_log_;  ///< receives every period if present
+  int logged_ = 0;                                                     ///< number of taps for which moving_ was logged
   std::optional<double> peak_;  ///< N, largest force against the tool in this tap; absent before the descent
 };
 

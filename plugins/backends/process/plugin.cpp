@@ -73,12 +73,12 @@ struct ProcessOptions : Options {
   }
 };
 
-class Process final : public Backend {
+class ChildProcessBackend final : public Backend {
  public:
   using Options = ProcessOptions;
 
   /// Throws Error if the program does not exist or its checksum differs from the option.
-  Process(const Options& options, const Context& context)
+  ChildProcessBackend(const Options& options, const Context& context)
       : options_(options),
         context_(context),
         words_(programs::split_command(options.command).value()),
@@ -100,7 +100,7 @@ class Process final : public Backend {
     return std::move(answer.result);
   }
 
-  bool taps_any_line() const override { return protocol() == Protocol::any_line; }
+  bool taps_any_line() const override { return protocol() == ProtocolVersion::any_line; }
 
   void reaches(const Candidates& lines, BoolOut out) const override {
     out.setConstant(true);
@@ -135,7 +135,7 @@ class Process final : public Backend {
   using Clock = std::chrono::steady_clock;
   using Seconds = std::chrono::duration<double>;
 
-  using Protocol = process::Protocol;
+  using ProtocolVersion = process::ProtocolVersion;
 
   static constexpr const char* kLock = "process.lock";
   static constexpr const char* kInterrupted = "interrupted";
@@ -150,7 +150,7 @@ class Process final : public Backend {
     bool ends_run = false;
   };
 
-  Protocol protocol() const { return static_cast<Protocol>(options_.protocol); }
+  ProtocolVersion protocol() const { return static_cast<ProtocolVersion>(options_.protocol); }
 
   static std::string describe(const TapLine& line) {
     const auto words = [](const Eigen::Vector3d& vector, double factor) {
@@ -177,7 +177,7 @@ class Process final : public Backend {
       lock = programs::lock_file(recorded(kLock), patience);
       if (!lock) return;
     }
-    child_ = std::make_unique<Child>(Program{words_, file_}, recorded("process.stderr.txt"), lock);
+    child_ = std::make_unique<Child>(ProgramCall{words_, file_}, recorded("process.stderr.txt"), lock);
     if (lock) programs::write_holder(lock, child_->pid());
   }
 
@@ -272,7 +272,7 @@ class Process final : public Backend {
   mutable bool reaches_all_ = false;  ///< whether the program has answered that it reaches all lines
 };
 
-PALPATE_PLUGIN(Backend, Process, "process",
+PALPATE_PLUGIN(Backend, ChildProcessBackend, "process",
                "any program that answers requests for taps. Requests and answers are JSON lines")
 
 }  // namespace palpate::backends

@@ -20,9 +20,9 @@ using Json = nlohmann::ordered_json;
 using programs::shown;
 
 /// Writes options as JSON in SI units. It uses the list of fields, so that new options of a motion need no code here.
-class Written final : public Fields {
+class OptionsWriter final : public Fields {
  public:
-  explicit Written(Json& out) : out_(out) {}
+  explicit OptionsWriter(Json& out) : out_(out) {}
 
   void real(double& value, const Field& field) override { out_[field.name] = value; }
   void real(std::optional<double>& value, const Field& field) override { maybe(value, field); }
@@ -35,7 +35,7 @@ class Written final : public Fields {
     if (cases[index].list) cases[index].list(*this);
   }
   void section(Options& options, const Field& field) override {
-    Written inner(out_[field.name] = Json::object());
+    OptionsWriter inner(out_[field.name] = Json::object());
     options.list(inner);
   }
   void section(bool& present, Options& options, const Field& field) override {
@@ -62,12 +62,12 @@ class Written final : public Fields {
 };
 
 /// Reads the fields of one answer. The first error is stored. Values that are read after it are meaningless.
-class Reader {
+class AnswerReader {
  public:
-  Reader(const Json& answer, const TapLine& line, Protocol protocol) : answer_(answer) {
+  AnswerReader(const Json& answer, const TapLine& line, ProtocolVersion protocol) : answer_(answer) {
     std::set<std::string> known{"tap", "outcome", "force", "seconds", "reason", "ends_run"};
     if (line.from_above) known.insert("height");
-    if (protocol == Protocol::any_line) known.insert({"distance", "contacts"});
+    if (protocol == ProtocolVersion::any_line) known.insert({"distance", "contacts"});
     for (const auto& [key, value] : answer.items()) {
       if (known.count(key) == 0) refuse("has an unknown field " + shown(key));
     }
@@ -132,7 +132,7 @@ class Reader {
   const Json& answer_;
 };
 
-TapResult read_result(Reader& reader, const TapLine& line, const HeightBounds& bounds) {
+TapResult read_result(AnswerReader& reader, const TapLine& line, const HeightBounds& bounds) {
   // The outcome is read first, so that an invalid outcome is reported before an invalid time.
   const Outcome outcome = reader.outcome();
   TapResult out = tap_without_contact(outcome, reader.number("seconds"));
@@ -160,9 +160,9 @@ Json json_of(const TapLine& line) {
 Json position_of(const TapLine& line) { return {{"x", line.start.x()}, {"y", line.start.y()}}; }
 
 /// Returns the first fields of a request. The folder of the record has the run's id as its name.
-Json header(const Context& context, Protocol protocol) {
+Json header(const Context& context, ProtocolVersion protocol) {
   Json out{{"palpate", static_cast<int>(protocol)}};
-  if (protocol == Protocol::any_line) out["run"] = std::filesystem::path(context.directory).filename().string();
+  if (protocol == ProtocolVersion::any_line) out["run"] = std::filesystem::path(context.directory).filename().string();
   return out;
 }
 
@@ -180,11 +180,11 @@ Answer refused(const std::string& line, const std::string& why, bool in_step, bo
 }  // namespace
 
 std::string ask_line(const TapRequest& request, const Context& context, tapping::MotionOptions& motion,
-                     Protocol protocol) {
+                     ProtocolVersion protocol) {
   Json ask = header(context, protocol);
   ask["tap"] = request.number;
   if (request.line.from_above) ask.update(position_of(request.line));
-  if (protocol == Protocol::any_line) {
+  if (protocol == ProtocolVersion::any_line) {
     ask["line"] = json_of(request.line);
     ask["lowest_height"] = context.scene.desk();
   }
@@ -192,7 +192,7 @@ std::string ask_line(const TapRequest& request, const Context& context, tapping:
   if (request.previous) {
     Json& previous = ask["previous"] = Json::object();
     if (request.previous->from_above) previous = position_of(*request.previous);
-    if (protocol == Protocol::any_line) previous.update(json_of(*request.previous));
+    if (protocol == ProtocolVersion::any_line) previous.update(json_of(*request.previous));
   }
   ask["predicted"] = nullptr;
   if (request.predicted) {
@@ -204,12 +204,13 @@ std::string ask_line(const TapRequest& request, const Context& context, tapping:
   ask["area"] = {{"width", area.width}, {"depth", area.depth}};
   ask["desk"] = context.scene.desk();
   ask["seed"] = context.seed;
-  Written fields(ask["motion"] = Json::object());
+  OptionsWriter fields(ask["motion"] = Json::object());
   motion.list(fields);
   return ask.dump() + "\n";
 }
 
-Answer read_answer(const std::string& line, const TapRequest& request, const HeightBounds& bounds, Protocol protocol) {
+Answer read_answer(const std::string& line, const TapRequest& request, const HeightBounds& bounds,
+                   ProtocolVersion protocol) {
   const Json json = Json::parse(line, nullptr, false);
   if (json.is_discarded()) {
     const bool python = line.find("NaN") != std::string::npos || line.find("Infinity") != std::string::npos;
@@ -220,14 +221,14 @@ Answer read_answer(const std::string& line, const TapRequest& request, const Hei
   if (!json.contains("tap")) return refused(line, "lacks 'tap'", false, ends_run);
   if (json["tap"] != Json(request.number))
     return refused(line, "does not belong to tap " + std::to_string(request.number), false, ends_run);
-  Reader reader(json, request.line, protocol);
+  AnswerReader reader(json, request.line, protocol);
   TapResult result = read_result(reader, request.line, bounds);
   if (!reader.trouble.empty()) return refused(line, reader.trouble, true, ends_run);
   return {true, true, std::move(result)};
 }
 
 std::string reaches_line(const Candidates& lines, Eigen::Index first, Eigen::Index count, const Context& context) {
-  Json ask = header(context, Protocol::any_line);
+  Json ask = header(context, ProtocolVersion::any_line);
   Json& all = ask["reaches"] = Json::array();
   for (Eigen::Index i = first; i < std::min(first + count, lines.size()); ++i) {
     const TapLine line = lines.line(i);

@@ -17,12 +17,12 @@ namespace palpate::process {
 
 /// Version of the protocol, which is part of every request. It increases if the meaning of a request or an answer
 /// changes.
-enum class Protocol { from_above = 1, any_line = 2 };
+enum class ProtocolVersion { from_above = 1, any_line = 2 };
 
 /// Returns the request for a tap, with its line end, in SI units. The request contains everything about the tap, so the
 /// program needs no state.
 std::string ask_line(const TapRequest& request, const Context& context, tapping::MotionOptions& motion,
-                     Protocol protocol);
+                     ProtocolVersion protocol);
 
 /// Result of reading a line as the answer to a tap.
 struct Answer {
@@ -32,7 +32,8 @@ struct Answer {
   TapResult result;
 };
 /// Reads `line` as the answer to `request`. Answers with values for which find_fault() returns a fault are rejected.
-Answer read_answer(const std::string& line, const TapRequest& request, const HeightBounds& bounds, Protocol protocol);
+Answer read_answer(const std::string& line, const TapRequest& request, const HeightBounds& bounds,
+                   ProtocolVersion protocol);
 
 /// Returns the request that asks along which lines the program can tap, with its line end. The request contains at most
 /// `count` of `lines`, beginning with line `first`.

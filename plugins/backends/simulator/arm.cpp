@@ -94,7 +94,7 @@ double touch_distance(const Effects& effects, const Line& line, const Free& free
 // The deviation d = position - set-point obeys d'' + 2 * zeta * omega * d' + omega^2 * d = 0. If the set-point moves
 // with the speed v, the arm lags behind it by (2 * zeta / omega) * v = delay * v. After a step of the set-point, the
 // arm overshoots by exp(-pi * zeta / sqrt(1 - zeta^2)) times the size of the step.
-Arm::Arm(const std::optional<JointLag>& lag, double period, double position)
+SimulatedAxis::SimulatedAxis(const std::optional<JointLag>& lag, double period, double position)
     : lags_(lag && lag->delay > 0.0), position_(position) {
   if (!lags_) return;
   const double log_overshoot = lag->overshoot > 0.0 ? math::log(lag->overshoot) : 0.0;
@@ -111,7 +111,7 @@ Arm::Arm(const std::optional<JointLag>& lag, double period, double position)
   from_velocity_[1] = decay * (cosine - zeta * omega * sine);
 }
 
-void Arm::follow(double set_point) {
+void SimulatedAxis::follow(double set_point) {
   if (!lags_) {
     position_ = set_point;
     return;

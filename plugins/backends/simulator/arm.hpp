@@ -20,9 +20,9 @@ namespace palpate::backends {
 
 /// Standard normal numbers from a random stream, by the method of Box and Muller. The method makes pairs of numbers.
 /// The second number of a pair is stored for the next call.
-class Normal {
+class GaussianNumbers {
  public:
-  explicit Normal(Random random) : random_(random) {}
+  explicit GaussianNumbers(Random random) : random_(random) {}
 
   double operator()() {
     if (spare_) return *std::exchange(spare_, std::nullopt);
@@ -42,10 +42,10 @@ class Normal {
 
 /// One axis that follows a set-point. It is a second-order system that is integrated exactly, because the set-point is
 /// constant in each period. Without `lag`, the axis reaches each set-point at once.
-class Arm {
+class SimulatedAxis {
  public:
   /// The axis starts at rest at `position` (metres). `period` is in seconds.
-  Arm(const std::optional<JointLag>& lag, double period, double position);
+  SimulatedAxis(const std::optional<JointLag>& lag, double period, double position);
 
   /// Simulates one period with this set-point (metres).
   void follow(double set_point);
@@ -113,7 +113,7 @@ class ContactModel {
   double peak_ = 0.0;
   double late_ = 0.0;           ///< latency of the force, in periods
   std::vector<double> forces_;  ///< true forces of all periods; used only if there is a latency
-  Normal normal_;
+  GaussianNumbers normal_;
 };
 
 }  // namespace palpate::backends

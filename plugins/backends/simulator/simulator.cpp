@@ -37,7 +37,7 @@ TapResult Simulator::tap(const TapRequest& request) {
 
 TapResult Simulator::tap_from_above(const TapRequest& request) {
   const tapping::MotionOptions& motion = options_.motion.of_request(request);
-  const Descending down{motion, tapping::plan_descent(motion, scene_.desk(), request.predicted)};
+  const PlannedDescent down{motion, tapping::plan_descent(motion, scene_.desk(), request.predicted)};
   if (!perfect_) {
     if (scene_.effects().push) pushed_ = scene_.after(request.number - 1);
     return imperfect_tap(request, down, pushed_ ? *pushed_ : scene_);
@@ -57,7 +57,7 @@ Eigen::Vector3d Simulator::pose_error(const TapRequest& request) const {
   const auto& noise = scene_.effects().pose_noise;
   Eigen::Vector3d out = Eigen::Vector3d::Zero();
   if (!noise) return out;
-  Normal normal(context_.random("simulator/pose", static_cast<std::uint64_t>(request.number)));
+  GaussianNumbers normal(context_.random("simulator/pose", static_cast<std::uint64_t>(request.number)));
   for (const Eigen::Index axis : {0, 1, 2}) out(axis) = (axis == 2 ? noise->vertical : noise->lateral) * normal();
   return out;
 }
@@ -78,7 +78,7 @@ bool Simulator::reaches(const TapLine& line) const {
   return line.direction.z() <= 0.0 && above > effects.shaft->radius * level;
 }
 
-tapping::HeightResult Simulator::ideal_tap(const Descending& tap, double surface) const {
+tapping::HeightResult Simulator::ideal_tap(const PlannedDescent& tap, double surface) const {
   const double down = tapping::ideal_seconds(tap.motion, tap.descent, surface);
   const double up = tapping::retreat_seconds(tap.motion, tap.descent, surface);
   if (down > tap.motion.timeout) return {Outcome::timeout, 0.0, 0.0, tap.motion.timeout + up, tapping::kTooLong};
@@ -105,7 +105,7 @@ TapResult Simulator::tap_along(const TapRequest& request) const {
   const Eigen::Vector3d met = true_line.origin + std::min(along, length) * true_line.direction;
   if (effects.foreign_objects)
     along -= foreign_object_height(*effects.foreign_objects, context_.seed, met.x(), met.y());
-  const Descending way{motion, {length, length, 0.0}};
+  const PlannedDescent way{motion, {length, length, 0.0}};
   const bool met_any = along <= length;
   const double left = met_any ? std::max(0.0, length - along) : -motion.overrun;
   tapping::HeightResult end =
@@ -121,7 +121,7 @@ TapResult Simulator::tap_along(const TapRequest& request) const {
   return out;
 }
 
-TapResult Simulator::imperfect_tap(const TapRequest& request, const Descending& tap, const Scene& scene) const {
+TapResult Simulator::imperfect_tap(const TapRequest& request, const PlannedDescent& tap, const Scene& scene) const {
   const Effects& effects = scene_.effects();
   const Target target = request.line.target();
   if (beyond_reach(target.x, target.y))
@@ -143,12 +143,12 @@ TapResult Simulator::imperfect_tap(const TapRequest& request, const Descending& 
   return tapping::result_on(request.line, std::move(contact));
 }
 
-tapping::HeightResult Simulator::simulated_tap(int number, const Descending& tap, double surface, bool desk) const {
+tapping::HeightResult Simulator::simulated_tap(int number, const PlannedDescent& tap, double surface, bool desk) const {
   using tapping::GuardedTap;
   const Effects& effects = scene_.effects();
   ContactModel sensor(effects, surface, desk, tap.descent.hover, tap.motion.threshold,
                       context_.random("simulator/touch", static_cast<std::uint64_t>(number)));
-  Arm arm(effects.joint_lag, GuardedTap::kPeriod, tap.descent.hover);
+  SimulatedAxis arm(effects.joint_lag, GuardedTap::kPeriod, tap.descent.hover);
   GuardedTap guarded(tap.motion, tap.descent);
   const std::optional<double>& limit = tap.motion.force_limit;
   tapping::Sample felt{};

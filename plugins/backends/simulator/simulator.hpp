@@ -42,7 +42,7 @@ class Simulator final : public Backend {
 
  private:
   /// A motion and the descent that it plans.
-  struct Descending {
+  struct PlannedDescent {
     const tapping::MotionOptions& motion;
     tapping::Descent descent;
   };
@@ -50,9 +50,9 @@ class Simulator final : public Backend {
   bool beyond_reach(double x, double y) const;
   /// Returns the difference between the true and the requested position, metres. It does not include the height offset.
   Eigen::Vector3d pose_error(const TapRequest& request) const;
-  tapping::HeightResult ideal_tap(const Descending& tap, double surface) const;
-  TapResult imperfect_tap(const TapRequest& request, const Descending& tap, const Scene& scene) const;
-  tapping::HeightResult simulated_tap(int number, const Descending& tap, double surface, bool desk) const;
+  tapping::HeightResult ideal_tap(const PlannedDescent& tap, double surface) const;
+  TapResult imperfect_tap(const TapRequest& request, const PlannedDescent& tap, const Scene& scene) const;
+  tapping::HeightResult simulated_tap(int number, const PlannedDescent& tap, double surface, bool desk) const;
   TapResult tap_along(const TapRequest& request) const;
   TapResult tap_from_above(const TapRequest& request);
   bool wait(double tap_seconds) const;

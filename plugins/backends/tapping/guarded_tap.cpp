@@ -43,7 +43,7 @@ std::vector<Sample> thinned(const std::vector<Sample>& samples) {
 
 }  // namespace
 
-GuardedTap::GuardedTap(const MotionOptions& motion, const Descent& descent, Arm arm)
+GuardedTap::GuardedTap(const MotionOptions& motion, const Descent& descent, ArmKind arm)
     : motion_(motion),
       descent_(descent),
       arm_(arm),
@@ -107,7 +107,7 @@ void GuardedTap::advance(double height) {
       if (waited(motion_.pause) && averaged(kFewestWatched)) conclude_at_rest(height);
       break;
     case Stage::back_off:
-      if (ramp(goal_, motion_.speed) && arrived(height)) enter(arm_ == Arm::real ? Stage::unwind : Stage::settle);
+      if (ramp(goal_, motion_.speed) && arrived(height)) enter(arm_ == ArmKind::real ? Stage::unwind : Stage::settle);
       break;
     case Stage::unwind:
       if (ramp(goal_, motion_.fine_speed) && arrived(height)) enter(Stage::settle);
@@ -137,7 +137,7 @@ void GuardedTap::finish_tare() {
 /// Tares a real arm at the end of a pause, when it rests. A force change of half the threshold may be a contact, so the
 /// tare does not remove it.
 void GuardedTap::tare_in_pause() {
-  if (arm_ != Arm::real || !waited(motion_.pause) || summed_ == 0) return;
+  if (arm_ != ArmKind::real || !waited(motion_.pause) || summed_ == 0) return;
   const double mean = sum_ / summed_;
   if (std::abs(mean - zero_) < 0.5 * motion_.threshold) {
     zero_ = mean;
@@ -164,7 +164,7 @@ void GuardedTap::give_up(double height) {
 
 /// Evaluates a new reading according to the stage.
 void GuardedTap::evaluate(double height, double force) {
-  const bool in_pause = arm_ == Arm::real && stage_ == Stage::pause && waited(motion_.pause - motion_.tare);
+  const bool in_pause = arm_ == ArmKind::real && stage_ == Stage::pause && waited(motion_.pause - motion_.tare);
   const bool stopped =
       (stage_ == Stage::stop || stage_ == Stage::rest) && (!waited(kWatched + kPeriod) || !averaged(kFewestWatched));
   if (taring() || in_pause || stopped) {
@@ -173,14 +173,14 @@ void GuardedTap::evaluate(double height, double force) {
   }
   if (taring()) return;
   const bool descending = stage_ == Stage::descend || stage_ == Stage::bottom;
-  if (arm_ == Arm::real && descending) {
+  if (arm_ == ArmKind::real && descending) {
     zero_ = free_.line(height).at(height);
     if (even_for() >= kConstantSpeedTime) free_.add({height, force});
   }
   const double felt = force - zero_;
   peak_ = std::max(peak_, felt);
   above_ = felt > threshold() ? above_ + 1 : 0;
-  const bool paused = arm_ == Arm::real && (stage_ == Stage::pause || stage_ == Stage::rest);
+  const bool paused = arm_ == ArmKind::real && (stage_ == Stage::pause || stage_ == Stage::rest);
   if (descending || stage_ == Stage::stop || paused) trace_.push_back({height, force});
 }
 
@@ -189,13 +189,13 @@ void GuardedTap::evaluate(double height, double force) {
 /// relaxes its springs, especially on soft objects.
 void GuardedTap::conclude(const Rise& found) {
   // While an arm brakes, it presses less, so the mean is lower.
-  const bool relaxes = motion_.brake > 0.0 || arm_ == Arm::real;
+  const bool relaxes = motion_.brake > 0.0 || arm_ == ArmKind::real;
   const double least = relaxes ? 0.5 * motion_.threshold : motion_.threshold;
   const bool presses = summed_ == 0 || sum_ / summed_ - zero_ > least;
   const bool lasts = found.is_contact && presses;
-  const bool asks = arm_ == Arm::real || motion_.confirm;
+  const bool asks = arm_ == ArmKind::real || motion_.confirm;
   if (given_up_ && !lasts) return finish({Outcome::aborted, 0.0, 0.0, 0.0, kStoppedByItself});
-  const bool again = arm_ == Arm::real && found.is_contact && refused_ && std::abs(*refused_ - first_) < kSamePlace;
+  const bool again = arm_ == ArmKind::real && found.is_contact && refused_ && std::abs(*refused_ - first_) < kSamePlace;
   if (!asks || lasts || again) return finish({Outcome::contact, found.height, peak_, 0.0, {}});
   if (found.is_contact) refused_ = first_;
   if (presses && !found.is_contact && too_soft()) {
@@ -218,14 +218,14 @@ bool GuardedTap::too_soft() {
 
 /// Ends the standstill of the motion `paper`. The result is the height of the resting arm.
 void GuardedTap::conclude_at_rest(double height) {
-  Rise found = arm_ == Arm::simulated ? Rise{height, true, 0.0} : rise();
+  Rise found = arm_ == ArmKind::simulated ? Rise{height, true, 0.0} : rise();
   found.height = height;
   conclude(found);
 }
 
 /// Ends a `continuous` motion with the height of the onset.
 void GuardedTap::conclude_at_onset() {
-  if (arm_ == Arm::simulated) return conclude({onset_of_descent(trace_).value_or(first_), true, 0.0});
+  if (arm_ == ArmKind::simulated) return conclude({onset_of_descent(trace_).value_or(first_), true, 0.0});
   conclude(rise());
 }
 
@@ -254,7 +254,7 @@ void GuardedTap::enter(Stage stage) {
   // With the motion `paper`, a real arm may touch during a pause or between two steps. The earlier samples of the
   // contact are then kept.
   const bool resumed =
-      stage_ == Stage::stop || (arm_ == Arm::real && (stage_ == Stage::pause || stage_ == Stage::rest));
+      stage_ == Stage::stop || (arm_ == ArmKind::real && (stage_ == Stage::pause || stage_ == Stage::rest));
   stage_ = stage;
   entered_ = periods_;
   above_ = 0;
@@ -273,7 +273,7 @@ void GuardedTap::enter(Stage stage) {
     case Stage::back_off: {
       // The retreat is measured from the onset, because a soft object may yield by more than back_off. The tare would
       // then include the force of the object.
-      const double more = arm_ == Arm::real ? kFromAbove : 0.0;
+      const double more = arm_ == ArmKind::real ? kFromAbove : 0.0;
       goal_ = std::min(descent_.hover + more,
                        std::max(set_point_, onset_of_descent(trace_).value_or(set_point_)) + motion_.back_off + more);
       break;
@@ -293,7 +293,7 @@ void GuardedTap::start_reaction(double height) {
   first_ = height;
   ++noticed_;
   // An arm that lags behind a constant set-point would press further and increase the force.
-  if (motion_.type != MotionOptions::Type::paper || arm_ == Arm::real) set_point_ = height;
+  if (motion_.type != MotionOptions::Type::paper || arm_ == ArmKind::real) set_point_ = height;
   if (motion_.type == MotionOptions::Type::continuous) set_point_ = std::min(descent_.hover, height + motion_.brake);
   switch (motion_.type) {
     case MotionOptions::Type::paper:

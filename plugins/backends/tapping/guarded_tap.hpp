@@ -58,7 +58,7 @@ class GuardedTap {
   /// jumps to the arm's position. Every pause of `paper` repeats the tare, unless a contact may begin. Because of
   /// friction, the force of a resting real arm depends on the direction of its last motion, so every tare follows a
   /// descent.
-  enum class Arm { simulated, real };
+  enum class ArmKind { simulated, real };
 
   /// Descent in metres after which the friction of a resting arm equals the friction of a descending arm: joints
   /// deflect less than a milliradian before they slip.
@@ -82,7 +82,7 @@ class GuardedTap {
   /// soft object.
   static constexpr double kSamePlace = 0.002;
 
-  GuardedTap(const MotionOptions& motion, const Descent& descent, Arm arm = Arm::simulated);
+  GuardedTap(const MotionOptions& motion, const Descent& descent, ArmKind arm = ArmKind::simulated);
 
   /// Takes the measured height of the tip (m) and the raw force against it (N), and returns the next set-point (m). A
   /// force that is not `fresh` is ignored, but the time passes.
@@ -142,13 +142,13 @@ class GuardedTap {
   bool arrived(double height);
   bool waited(double seconds) const;
   /// Returns whether the mean of a stage has enough readings.
-  bool averaged(int fewest) const { return arm_ == Arm::simulated || summed_ >= fewest; }
+  bool averaged(int fewest) const { return arm_ == ArmKind::simulated || summed_ >= fewest; }
   void finish(const tapping::HeightResult& result);
   double threshold() const { return stage_ == Stage::fine ? motion_.fine_threshold : motion_.threshold; }
 
   MotionOptions motion_;
   Descent descent_;
-  Arm arm_;
+  ArmKind arm_;
   Stage stage_ = Stage::tare;
   long periods_ = 0;
   long entered_ = 0;  ///< period in which the stage began

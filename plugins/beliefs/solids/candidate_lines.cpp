@@ -20,7 +20,7 @@ using Eigen::Vector3d;
 constexpr double kSteepestUp = 0.5;
 
 /// Returns a uniformly drawn line with a direction in which a tool may move.
-Line random_line(const Region& region, Random& random) {
+Line random_line(const SearchBall& region, Random& random) {
   while (true) {
     const double z = -1.0 + (1.0 + kSteepestUp) * random.uniform();
     const double angle = 2.0 * kHalfTurn * random.uniform();
@@ -38,7 +38,7 @@ Line random_line(const Region& region, Random& random) {
 }
 
 /// Returns the line along the surface normal at the point where a random line meets the surface; nullopt if it misses.
-std::optional<Line> along_normal(const Region& region, const Assembly& surface, Random& random) {
+std::optional<Line> along_normal(const SearchBall& region, const Assembly& surface, Random& random) {
   const Line line = random_line(region, random);
   const double hit = surface.first_intersection(line);
   if (hit >= distance_down_to(0.0, line)) return std::nullopt;
@@ -67,15 +67,15 @@ void append(const Candidates& from, const Eigen::Array<bool, Eigen::Dynamic, 1>&
 
 }  // namespace
 
-Region::Region(const Area& area) {
+SearchBall::SearchBall(const Area& area) {
   constexpr double kShare = 0.46;  // radius as a share of the longer side, along which objects may be anywhere
   constexpr double kHeight = 0.65;
   radius = kShare * std::max(area.width, area.depth);
   centre = {area.width / 2, area.depth / 2, kHeight * radius};
 }
 
-SampledLines sample_lines(const Region& region, double desk, std::size_t count, const Assembly* surface, Random& random,
-                          const LineFilter& filter) {
+SampledLines sample_lines(const SearchBall& region, double desk, std::size_t count, const Assembly* surface,
+                          Random& random, const LineFilter& filter) {
   constexpr std::size_t kTries = 20;
   SampledLines out;
   out.lines.fixed = false;

@@ -19,8 +19,8 @@ namespace palpate {
 
 /// The ball in which objects are searched. Its centre is above the middle of the area, at 0.65 of its radius above the
 /// desk. Heights are relative to the desk.
-struct Region {
-  explicit Region(const Area& area);
+struct SearchBall {
+  explicit SearchBall(const Area& area);
   Eigen::Vector3d centre;
   double radius = 0.0;  ///< metres
   /// Distance from the centre at which lines begin.
@@ -36,7 +36,7 @@ struct SampledLines {
 /// Draws `count` lines that `filter` accepts. `desk`: height of the desk, metres. Half of the lines, the first
 /// included, are drawn at random, the others along normals of `surface`. Without a surface, all are random. Throws
 /// Error if the filter rejects nearly all.
-SampledLines sample_lines(const Region& region, double desk, std::size_t count, const Assembly* surface, Random& random,
-                          const LineFilter& filter);
+SampledLines sample_lines(const SearchBall& region, double desk, std::size_t count, const Assembly* surface,
+                          Random& random, const LineFilter& filter);
 
 }  // namespace palpate

@@ -8,13 +8,13 @@
 
 namespace palpate {
 
-Line LineValues::line(const SampledLines& lines, Eigen::Index index) const {
+Line CandidateQuantities::line(const SampledLines& lines, Eigen::Index index) const {
   const TapLine one = lines.lines.line(index);
   return {one.start - Eigen::Vector3d(0.0, 0.0, desk_), one.direction};
 }
 
-void LineValues::compute(const SampledLines& lines, const Solids& solids, const ResidualGp& residual_gp,
-                         const QuantitySet& reads, Random random) {
+void CandidateQuantities::compute(const SampledLines& lines, const AssemblySampler& solids,
+                                  const ResidualGp& residual_gp, const QuantitySet& reads, Random random) {
   using namespace quantity;
   reads_ = reads;
   const auto has = [&](const char* name) { return reads.count(name) != 0; };
@@ -32,7 +32,7 @@ void LineValues::compute(const SampledLines& lines, const Solids& solids, const 
   if (has(kExpectedDiscovery)) arrays_[kExpectedDiscovery] = discovery(lines, solids, random);
 }
 
-void LineValues::find_contacts(const SampledLines& lines, const Assembly& best) {
+void CandidateQuantities::find_contacts(const SampledLines& lines, const Assembly& best) {
   const Eigen::Index count = lines.lines.size();
   distance_.resize(count);
   incidence_cosine_ = Eigen::VectorXd::Zero(count);
@@ -51,7 +51,7 @@ void LineValues::find_contacts(const SampledLines& lines, const Assembly& best) 
   }
 }
 
-Eigen::VectorXd LineValues::deviations(const ResidualGp& residual_gp) {
+Eigen::VectorXd CandidateQuantities::deviations(const ResidualGp& residual_gp) {
   const ResidualGp::Posterior posterior = residual_gp.posterior(places_);
   Eigen::VectorXd out = Eigen::VectorXd::Zero(distance_.size());
   out(meets_) = posterior.variance.cwiseSqrt();
@@ -59,7 +59,7 @@ Eigen::VectorXd LineValues::deviations(const ResidualGp& residual_gp) {
   return out;
 }
 
-Eigen::VectorXd LineValues::uncertainty(const Eigen::VectorXd& deviations) const {
+Eigen::VectorXd CandidateQuantities::uncertainty(const Eigen::VectorXd& deviations) const {
   // The largest value is 1, whatever the unit of the deviations. Lines at an angle to the normal reveal less of the
   // surface, so their value is 0.
   constexpr double kAlong = 0.999;
@@ -69,7 +69,7 @@ Eigen::VectorXd LineValues::uncertainty(const Eigen::VectorXd& deviations) const
   return (incidence_cosine_.array() > kAlong).select(share, 0.0);
 }
 
-Eigen::VectorXd LineValues::reductions(const Solids& solids, const ResidualGp& residual_gp) {
+Eigen::VectorXd CandidateQuantities::reductions(const AssemblySampler& solids, const ResidualGp& residual_gp) {
   constexpr std::size_t kMost = 300;
   constexpr double kSquarely = 0.5;
   const Representatives some = representatives(places_, kMost);
@@ -83,7 +83,8 @@ Eigen::VectorXd LineValues::reductions(const Solids& solids, const ResidualGp& r
   return out;
 }
 
-Eigen::VectorXd LineValues::discovery(const SampledLines& lines, const Solids& solids, Random random) const {
+Eigen::VectorXd CandidateQuantities::discovery(const SampledLines& lines, const AssemblySampler& solids,
+                                               Random random) const {
   constexpr int kDraws = 1000;
   constexpr double kMinEarlier = 0.003;  // metres: a primitive counts if it makes the contact earlier by more than this
   constexpr double kFarthest = 0.03;     // metres: larger differences are set to this value

@@ -19,14 +19,14 @@
 namespace palpate {
 
 /// One value per line for each quantity. A quantity is empty before compute(), and if `reads` does not contain it.
-class LineValues {
+class CandidateQuantities {
  public:
   /// `desk`: height of the desk, metres.
-  explicit LineValues(double desk) : desk_(desk) {}
+  explicit CandidateQuantities(double desk) : desk_(desk) {}
 
   /// Computes the quantities of `lines` that are in `reads`. `random` is used for expected_discovery.
-  void compute(const SampledLines& lines, const Solids& solids, const ResidualGp& residual_gp, const QuantitySet& reads,
-               Random random);
+  void compute(const SampledLines& lines, const AssemblySampler& solids, const ResidualGp& residual_gp,
+               const QuantitySet& reads, Random random);
 
   /// Returns `reads` of the last compute(). It may contain names of quantities without an array.
   const QuantitySet& reads() const { return reads_; }
@@ -44,8 +44,8 @@ class LineValues {
   Eigen::VectorXd deviations(const ResidualGp& residual_gp);
   /// Returns (deviation / largest deviation)^2 for lines along the surface normal, else 0.
   Eigen::VectorXd uncertainty(const Eigen::VectorXd& deviations) const;
-  Eigen::VectorXd reductions(const Solids& solids, const ResidualGp& residual_gp);
-  Eigen::VectorXd discovery(const SampledLines& lines, const Solids& solids, Random random) const;
+  Eigen::VectorXd reductions(const AssemblySampler& solids, const ResidualGp& residual_gp);
+  Eigen::VectorXd discovery(const SampledLines& lines, const AssemblySampler& solids, Random random) const;
 
   double desk_;
   QuantitySet reads_;

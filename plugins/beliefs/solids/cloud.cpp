@@ -35,7 +35,7 @@ constexpr double kFar = 0.1;  ///< metres: larger distances, and distances to an
 
 }  // namespace
 
-Bundle::Bundle(const Vector3d& centre, double radius, int directions, double pitch) {
+LineBundle::LineBundle(const Vector3d& centre, double radius, int directions, double pitch) {
   for (int k = 0; k < directions; ++k) {
     // Directions on a spiral over the sphere, with equal areas.
     const double z = -1.0 + 1.5 * (k + 0.5) / directions;
@@ -101,9 +101,9 @@ std::vector<double> nearest_distances(const Cloud& from, const Cloud& to) {
 CloudErrors compare_clouds(const Cloud& belief, const Cloud& truth) {
   constexpr double kNear = 0.005;      // metres: threshold of the F-score
   constexpr double kThinning = 0.003;  // metres: avoids a larger weight where many lines meet the surface
-  struct Sums {
+  struct DistanceSums {
     double count = 0.0, distance = 0.0, square = 0.0, near = 0.0;
-    explicit Sums(const std::vector<double>& distances) : count(static_cast<double>(distances.size())) {
+    explicit DistanceSums(const std::vector<double>& distances) : count(static_cast<double>(distances.size())) {
       for (const double one : distances) {
         const double shown = std::min(one, kFar);
         distance += shown;
@@ -112,8 +112,8 @@ CloudErrors compare_clouds(const Cloud& belief, const Cloud& truth) {
       }
     }
   };
-  const Sums forth(nearest_distances(thinned(belief, kThinning), truth));
-  const Sums back(nearest_distances(thinned(truth, kThinning), belief));
+  const DistanceSums forth(nearest_distances(thinned(belief, kThinning), truth));
+  const DistanceSums back(nearest_distances(thinned(truth, kThinning), belief));
   const auto ratio = [](double part, double whole, double of_nothing) {
     return whole > 0.0 ? part / whole : of_nothing;
   };

@@ -13,8 +13,8 @@ namespace palpate {
 
 /// Bundles of parallel lines through a ball. Their directions are spread over all directions in which a tool may move:
 /// down, level, or up by at most 30 degrees. The errors of a surface are measured where these lines first meet it.
-struct Bundle {
-  Bundle(const Eigen::Vector3d& centre, double radius, int directions, double pitch);
+struct LineBundle {
+  LineBundle(const Eigen::Vector3d& centre, double radius, int directions, double pitch);
 
   std::vector<Line> lines;  ///< each begins on the ball, above the desk
 };

@@ -16,7 +16,7 @@ using Eigen::Vector3d;
 using Eigen::VectorXd;
 
 /// A point of a free path.
-struct Passage {
+struct FreePathPoint {
   std::size_t way;
   ResidualKernel::Place place;
   double distance;      ///< signed distance to the assembly, metres
@@ -26,13 +26,13 @@ struct Passage {
 
 /// Returns the points of free paths that are near the surface of the assembly or inside it. `reach`: bound of the mean
 /// of the residual GP given the contacts alone, metres.
-std::vector<Passage> passages_of(const ResidualKernel& kernel, const Assembly& solids,
-                                 const std::vector<SurfaceTouch>& touches, double reach) {
+std::vector<FreePathPoint> passages_of(const ResidualKernel& kernel, const Assembly& solids,
+                                       const std::vector<SurfaceTouch>& touches, double reach) {
   constexpr double kStep = 0.0015;
   constexpr double kDeviations = 3.0;
   const double deepest = std::min(kMaxResidual, kDeviations * kernel.deviation());
   const double near = std::max(deepest, reach);
-  std::vector<Passage> out;
+  std::vector<FreePathPoint> out;
   for (std::size_t way = 0; way < touches.size(); ++way) {
     const std::size_t first = out.size();
     for (double along = 0.0; along < touches[way].length;) {
@@ -51,10 +51,10 @@ std::vector<Passage> passages_of(const ResidualKernel& kernel, const Assembly& s
 
 /// Returns the deepest point of each stretch of a path inside the surface. A point that was added before ends a
 /// stretch.
-std::vector<Passage*> deepest(const std::vector<Passage*>& passages, double noise) {
-  std::vector<Passage*> out;
-  const Passage* before = nullptr;
-  for (Passage* const one : passages) {
+std::vector<FreePathPoint*> deepest(const std::vector<FreePathPoint*>& passages, double noise) {
+  std::vector<FreePathPoint*> out;
+  const FreePathPoint* before = nullptr;
+  for (FreePathPoint* const one : passages) {
     const bool broken = !one->taken && one->inside > noise;
     if (broken && before != nullptr && before->way == one->way) {
       if (one->inside > out.back()->inside) out.back() = one;
@@ -67,22 +67,22 @@ std::vector<Passage*> deepest(const std::vector<Passage*>& passages, double nois
 }
 
 /// Computes how far these points are inside the surface of the residual GP, metres.
-void update_inside(const ResidualKernel& kernel, const ResidualData& known, const std::vector<Passage*>& some) {
+void update_inside(const ResidualKernel& kernel, const ResidualData& known, const std::vector<FreePathPoint*>& some) {
   ResidualKernel::Places places;
-  for (const Passage* const one : some) places.push_back(one->place);
+  for (const FreePathPoint* const one : some) places.push_back(one->place);
   const VectorXd means = known.means(kernel, places);
   for (std::size_t i = 0; i < some.size(); ++i)
     some[i]->inside = means(static_cast<Eigen::Index>(i)) - some[i]->distance;
 }
 
 /// Updates all points and returns those inside the surface or near it.
-std::vector<Passage*> find_close(const ResidualKernel& kernel, const ResidualData& known,
-                                 const std::vector<Passage*>& all) {
+std::vector<FreePathPoint*> find_close(const ResidualKernel& kernel, const ResidualData& known,
+                                       const std::vector<FreePathPoint*>& all) {
   constexpr double kClose = 0.003;  // metres: held points elsewhere usually move the surface outwards by less
   update_inside(kernel, known, all);
-  std::vector<Passage*> out;
+  std::vector<FreePathPoint*> out;
   std::copy_if(all.begin(), all.end(), std::back_inserter(out),
-               [&](const Passage* one) { return one->inside > -kClose; });
+               [&](const FreePathPoint* one) { return one->inside > -kClose; });
   return out;
 }
 
@@ -97,10 +97,10 @@ class ConstrainedFit {
 
   /// Adds free points, all with the same noise, to `paths`. Replaces the free points of `known` by those that hold in
   /// the new optimum.
-  void add(const std::vector<ResidualKernel::Row>& rows, FreePaths& paths, ResidualData& known) {
+  void add(const std::vector<ResidualKernel::ResidualDatum>& rows, FreePaths& paths, ResidualData& known) {
     const auto lower = contacts_.lower.triangularView<Eigen::Lower>();
     paths.points.insert(paths.points.end(), rows.begin(), rows.end());
-    const ResidualKernel::Table table = ResidualKernel::table_of(rows);
+    const ResidualKernel::DatumTable table = ResidualKernel::table_of(rows);
     const auto m = static_cast<Eigen::Index>(rows.size());
     MatrixXd with = kernel_.covariances(contacts_.table, table);
     VectorXd inside = with.transpose() * contacts_.weights;
@@ -128,7 +128,7 @@ class ConstrainedFit {
   const ResidualKernel& kernel_;
   const ResidualData contacts_;
   MatrixXd between_;  ///< V
-  Nonnegative pull_;
+  NonnegativeSolver pull_;
 };
 
 }  // namespace
@@ -142,7 +142,7 @@ double ResidualData::reach(const ResidualKernel& kernel) const {
   double square = 0.0;
   double largest = 0.0;
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    const ResidualKernel::Row& row = rows[i];
+    const ResidualKernel::ResidualDatum& row = rows[i];
     const double weight = weights(static_cast<Eigen::Index>(i));
     square += weight * (row.target - row.noise * row.noise * weight);
     largest = std::max(largest, std::abs(row.target));
@@ -166,14 +166,14 @@ FreePaths hold_free_paths(const ResidualKernel& kernel, const Assembly& solids,
   constexpr double kLeast = 1e-4;
   constexpr int kRounds = 16;
   const double noise = std::max(kLeast, contact_noise);
-  std::vector<Passage> passages = passages_of(kernel, solids, touches, known.reach(kernel));
-  std::vector<Passage*> all;
-  for (Passage& one : passages) all.push_back(&one);
+  std::vector<FreePathPoint> passages = passages_of(kernel, solids, touches, known.reach(kernel));
+  std::vector<FreePathPoint*> all;
+  for (FreePathPoint& one : passages) all.push_back(&one);
   FreePaths out;
   ConstrainedFit fit(kernel, known);
-  std::vector<Passage*> close = find_close(kernel, known, all);
+  std::vector<FreePathPoint*> close = find_close(kernel, known, all);
   for (int round = 0;; ++round) {
-    std::vector<Passage*> more = deepest(close, noise);
+    std::vector<FreePathPoint*> more = deepest(close, noise);
     if (round == kRounds || (more.empty() && round > 0)) {
       close = find_close(kernel, known, all);
       more = deepest(close, noise);
@@ -183,8 +183,8 @@ FreePaths hold_free_paths(const ResidualKernel& kernel, const Assembly& solids,
       for (std::size_t i = 0; i < more.size(); ++i) out.violated += i == 0 || more[i]->way != more[i - 1]->way ? 1 : 0;
       return out;
     }
-    std::vector<ResidualKernel::Row> rows;
-    for (Passage* const one : more) {
+    std::vector<ResidualKernel::ResidualDatum> rows;
+    for (FreePathPoint* const one : more) {
       one->taken = true;
       rows.push_back({one->place, Vector3d::Zero(), one->distance, noise, true});
     }

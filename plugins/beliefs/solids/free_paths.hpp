@@ -17,8 +17,8 @@ inline constexpr double kMaxResidual = 0.012;
 
 /// Data of the residual GP. The rows of free paths come last.
 struct ResidualData {
-  std::vector<ResidualKernel::Row> rows;
-  ResidualKernel::Table table;
+  std::vector<ResidualKernel::ResidualDatum> rows;
+  ResidualKernel::DatumTable table;
   /// Cholesky factor of the covariance of all data except those of free paths, noise included.
   Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> lower;
   Eigen::VectorXd weights;
@@ -31,7 +31,7 @@ struct ResidualData {
 
 /// The free paths of a fit.
 struct FreePaths {
-  std::vector<ResidualKernel::Row> points;  ///< points that were inside the surface at some time
+  std::vector<ResidualKernel::ResidualDatum> points;  ///< points that were inside the surface at some time
   /// Number of paths that are still inside the surface by more than their noise, apart from points that hold it back.
   /// The fit then ended at its largest number of rounds.
   int violated = 0;

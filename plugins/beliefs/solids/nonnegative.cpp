@@ -8,7 +8,7 @@ namespace palpate {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-void Nonnegative::append(const Eigen::MatrixXd& s, const VectorXd& d) {
+void NonnegativeSolver::append(const Eigen::MatrixXd& s, const VectorXd& d) {
   const Index n = d_.size();
   const Index m = d.size();
   s_.conservativeResize(n + m, n + m);
@@ -16,12 +16,12 @@ void Nonnegative::append(const Eigen::MatrixXd& s, const VectorXd& d) {
   s_.bottomRows(m).leftCols(n) = s.topRows(n).transpose();
   d_.conservativeResize(n + m);
   d_.tail(m) = d;
-  is_.resize(static_cast<std::size_t>(n + m), Is::free);
+  is_.resize(static_cast<std::size_t>(n + m), UnknownState::free);
 }
 
-bool Nonnegative::hold(int unknown) {
+bool NonnegativeSolver::hold(int unknown) {
   const bool regular = factor_.append(VectorXd(s_.col(unknown)(held_)), s_(unknown, unknown));
-  is_[static_cast<std::size_t>(unknown)] = regular ? Is::held : Is::aside;
+  is_[static_cast<std::size_t>(unknown)] = regular ? UnknownState::held : UnknownState::aside;
   if (regular) {
     held_.push_back(unknown);
   } else {
@@ -30,14 +30,14 @@ bool Nonnegative::hold(int unknown) {
   return regular;
 }
 
-void Nonnegative::hold_only(const std::vector<int>& unknowns) {
-  for (const int one : held_) is_[static_cast<std::size_t>(one)] = Is::free;
+void NonnegativeSolver::hold_only(const std::vector<int>& unknowns) {
+  for (const int one : held_) is_[static_cast<std::size_t>(one)] = UnknownState::free;
   held_.clear();
   factor_.clear();
   for (const int one : unknowns) hold(one);
 }
 
-VectorXd Nonnegative::unbounded() const {
+VectorXd NonnegativeSolver::unbounded() const {
   VectorXd out = d_(held_);
   for (int i = 0; i < factor_.size(); ++i) out(i) = (out(i) - factor_.row(i).dot(out.head(i))) / factor_.pivot(i);
   for (int i = factor_.size() - 1; i >= 0; --i) {
@@ -47,7 +47,7 @@ VectorXd Nonnegative::unbounded() const {
   return out;
 }
 
-void Nonnegative::settle() {
+void NonnegativeSolver::settle() {
   while (true) {
     const VectorXd best = unbounded();
     // Moves the values towards `best` until the first value reaches 0. That unknown is released, even if rounding
@@ -78,7 +78,7 @@ void Nonnegative::settle() {
   }
 }
 
-void Nonnegative::solve() {
+void NonnegativeSolver::solve() {
   if (d_.size() == 0) return;
   const double rounding = 1e-13 * d_.cwiseAbs().maxCoeff();
   const auto cost = [&] { return -0.5 * values_.dot(VectorXd(d_(held_))); };  // valid only at an optimum
@@ -88,7 +88,7 @@ void Nonnegative::solve() {
     int next = -1;
     for (int i = 0; i < static_cast<int>(is_.size()); ++i) {
       const auto one = static_cast<std::size_t>(i);
-      if (is_[one] == Is::free && !refused[one] && pull(i) > (next < 0 ? rounding : pull(next))) next = i;
+      if (is_[one] == UnknownState::free && !refused[one] && pull(i) > (next < 0 ? rounding : pull(next))) next = i;
     }
     if (next < 0) return;
     const std::vector<int> before = held_;

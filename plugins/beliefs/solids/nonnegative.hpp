@@ -16,7 +16,7 @@
 
 namespace palpate {
 
-class Nonnegative {
+class NonnegativeSolver {
  public:
   /// Appends m unknowns to the existing n: `s` holds the last m columns of S (n + m rows), `d` has m values.
   void append(const Eigen::MatrixXd& s, const Eigen::VectorXd& d);
@@ -30,7 +30,7 @@ class Nonnegative {
   int redundant_taps() const { return set_aside_; }
 
  private:
-  enum class Is { free, held, aside };
+  enum class UnknownState { free, held, aside };
   /// Adds an unknown to the held ones. If their part of S is then not positive definite, excludes it and returns false.
   bool hold(int unknown);
   /// Holds exactly these unknowns.
@@ -42,7 +42,7 @@ class Nonnegative {
 
   Eigen::MatrixXd s_;
   Eigen::VectorXd d_;
-  std::vector<Is> is_;
+  std::vector<UnknownState> is_;
   std::vector<int> held_;
   Eigen::VectorXd values_;
   Factor factor_;  ///< factor of the part of S with the held rows and columns

@@ -51,7 +51,7 @@ void Overtravel::add(const SurfaceTouch& told, double force) {
   // Prior: two contacts with the smallest spread.
   double count = 2.0;
   double squares = count * kLeastSpread * kLeastSpread;
-  for (const Low& low : lows_) {
+  for (const LowContact& low : lows_) {
     const double below = low.height + at(low.force) * low.steep;
     if (below >= 0.0) continue;
     squares += below * below;

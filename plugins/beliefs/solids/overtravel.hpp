@@ -40,7 +40,7 @@ class Overtravel {
   static constexpr double kLeastSpread = 0.0005;
 
  private:
-  struct Low {
+  struct LowContact {
     double height;  ///< height of the tip's lowest point, as reported
     double steep;   ///< vertical component of the direction, downwards
     double force;
@@ -51,7 +51,7 @@ class Overtravel {
   double tip_;
   double most_;
   OffsetModel offset_model_;
-  std::vector<Low> lows_;  ///< contacts that may be with the desk, in the order of offset_model_
+  std::vector<LowContact> lows_;  ///< contacts that may be with the desk, in the order of offset_model_
   double spread_ = kLeastSpread;
 };
 

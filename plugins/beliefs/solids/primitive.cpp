@@ -118,25 +118,25 @@ double to_form(Primitive::Form form, const Vector3d& half, const Vector3d& at, d
 }
 
 /// An angle by its cosine and sine.
-struct Turned {
+struct PlaneRotation {
   double cosine = 1.0, sine = 0.0;
 };
 
-Turned turned_by(double angle) { return {math::cos(angle), math::sin(angle)}; }
+PlaneRotation turned_by(double angle) { return {math::cos(angle), math::sin(angle)}; }
 
 /// Returns aside() of a round primitive. The line is given in the primitive's frame: a point `from` and the unit
 /// direction `along`. Searches the direction with the least value: first among twelve, then between them. It uses sums
 /// of known angles, because this search dominates the run time of runs from any side.
 double search_aside(const Primitive& primitive, const Vector3d& from, const Vector3d& along, double most) {
-  static const std::array<Turned, 12> directions = [] {
-    std::array<Turned, 12> out;
+  static const std::array<PlaneRotation, 12> directions = [] {
+    std::array<PlaneRotation, 12> out;
     for (std::size_t k = 0; k < out.size(); ++k) out[k] = turned_by(kHalfTurn / 6.0 * static_cast<double>(k));
     return out;
   }();
-  static const std::array<Turned, 5> steps = [] {
-    std::array<Turned, 5> out;
+  static const std::array<PlaneRotation, 5> steps = [] {
+    std::array<PlaneRotation, 5> out;
     double step = kHalfTurn / 12.0;
-    for (Turned& one : out) one = turned_by(step), step /= 2.0;
+    for (PlaneRotation& one : out) one = turned_by(step), step /= 2.0;
     return out;
   }();
   const Vector3d one = along.unitOrthogonal();
@@ -144,20 +144,20 @@ double search_aside(const Primitive& primitive, const Vector3d& from, const Vect
   const double towards_one = one.dot(from);
   const double towards_other = other.dot(from);
   double least = kNoHit;
-  Turned best;
-  const auto attempt = [&](const Turned& turned) {
+  PlaneRotation best;
+  const auto attempt = [&](const PlaneRotation& turned) {
     const double room = primitive.reach(turned.cosine * one + turned.sine * other) - turned.cosine * towards_one -
                         turned.sine * towards_other;
     if (!(room < least)) return;
     least = room;
     best = turned;
   };
-  for (const Turned& direction : directions) attempt(direction);
+  for (const PlaneRotation& direction : directions) attempt(direction);
   // Between two of these directions, the value may be smaller. The difference is at most sin 15 degrees times the
   // extent (for thin solids), plus (1 - cos 15 degrees) times the distance between line and centre.
   if (least - 0.3 * primitive.half.norm() > most) return most;
-  for (const Turned& step : steps) {
-    const Turned middle = best;
+  for (const PlaneRotation& step : steps) {
+    const PlaneRotation middle = best;
     attempt(
         {middle.cosine * step.cosine + middle.sine * step.sine, middle.sine * step.cosine - middle.cosine * step.sine});
     attempt(

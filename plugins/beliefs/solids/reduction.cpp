@@ -16,11 +16,11 @@ using Eigen::VectorXd;
 
 }  // namespace
 
-VectorXd expected_reductions(const Solids& solids, const ResidualGp& residual_gp, const ResidualGp::Places& places,
-                             FactorReport* report) {
+VectorXd expected_reductions(const AssemblySampler& solids, const ResidualGp& residual_gp,
+                             const ResidualGp::Places& places, FactorReport* report) {
   if (places.empty()) return {};
-  std::vector<ResidualGp::Row> all;  // contacts first
-  for (const ResidualGp::Row& row : residual_gp.rows()) {
+  std::vector<ResidualGp::ResidualDatum> all;  // contacts first
+  for (const ResidualGp::ResidualDatum& row : residual_gp.rows()) {
     if (!row.free && row.along.isZero(0.0)) all.push_back({row.place});
   }
   const auto n = static_cast<Index>(all.size());

@@ -30,7 +30,7 @@ namespace palpate {
 /// assembly. It is the decrease of the mean standard deviation over all places, metres, between 0 and this mean. The
 /// work grows with the square of the number of places. Adds jitter, a variance in square metres, and redundant rows to
 /// `report`. Never throws.
-Eigen::VectorXd expected_reductions(const Solids& solids, const ResidualGp& residual_gp,
+Eigen::VectorXd expected_reductions(const AssemblySampler& solids, const ResidualGp& residual_gp,
                                     const ResidualGp::Places& places, FactorReport* report = nullptr);
 
 /// A subset of the places, evenly spread: the first place in each cube for each direction of the normal. The side of

@@ -34,10 +34,10 @@ std::vector<int> factorise(Factor& factor, const MatrixXd& covariance, const std
 
 }  // namespace
 
-std::vector<ResidualGp::Row> ResidualGp::contacts_of(const Assembly& solids,
-                                                     const std::vector<SurfaceTouch>& touches) const {
-  std::vector<Row> out;
-  std::vector<Row> slopes;
+std::vector<ResidualGp::ResidualDatum> ResidualGp::contacts_of(const Assembly& solids,
+                                                               const std::vector<SurfaceTouch>& touches) const {
+  std::vector<ResidualDatum> out;
+  std::vector<ResidualDatum> slopes;
   for (const SurfaceTouch& touch : touches) {
     if (!touch.contact || touch.desk) continue;
     const Place place{touch.end(), solids.normal(touch.end())};
@@ -60,13 +60,13 @@ std::vector<ResidualGp::Row> ResidualGp::contacts_of(const Assembly& solids,
   return out;
 }
 
-void ResidualGp::take_in(std::vector<Row> rows) {
-  ResidualKernel::Table table = ResidualKernel::table_of(rows);
+void ResidualGp::take_in(std::vector<ResidualDatum> rows) {
+  ResidualKernel::DatumTable table = ResidualKernel::table_of(rows);
   MatrixXd covariance = kernel_.covariances(table, table);
   const auto n = static_cast<Eigen::Index>(rows.size());
   VectorXd noise(n), targets(n);
   for (Eigen::Index i = 0; i < n; ++i) {
-    const Row& row = rows[static_cast<std::size_t>(i)];
+    const ResidualDatum& row = rows[static_cast<std::size_t>(i)];
     noise(i) = row.noise * row.noise;
     targets(i) = row.target;
   }
@@ -81,7 +81,7 @@ void ResidualGp::take_in(std::vector<Row> rows) {
   const auto pivot = [&] {
     covariance.diagonal() += report_.jitter * covariance.diagonal() + noise;
     const std::vector<int> taken = factorise(factor, covariance, independent_rows(covariance), VectorXd::Zero(n), 0.0);
-    std::vector<Row> kept;
+    std::vector<ResidualDatum> kept;
     for (const int i : taken) kept.push_back(rows[static_cast<std::size_t>(i)]);
     rows = kept;
     targets = VectorXd(targets(taken));
@@ -101,10 +101,10 @@ void ResidualGp::take_in(std::vector<Row> rows) {
 }
 
 void ResidualGp::fit(const Assembly& solids, const std::vector<SurfaceTouch>& touches) {
-  std::vector<Row> rows = contacts_of(solids, touches);
+  std::vector<ResidualDatum> rows = contacts_of(solids, touches);
   double squares = 0.0;
   int count = 0;
-  for (const Row& row : rows) {
+  for (const ResidualDatum& row : rows) {
     if (!row.along.isZero(0.0)) continue;
     squares += row.target * row.target;
     ++count;

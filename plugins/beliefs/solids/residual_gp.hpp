@@ -51,7 +51,7 @@ class ResidualGp {
  public:
   using Place = ResidualKernel::Place;
   using Places = ResidualKernel::Places;
-  using Row = ResidualKernel::Row;
+  using ResidualDatum = ResidualKernel::ResidualDatum;
 
   /// Throws Error unless the kernel depends on the distance alone.
   ResidualGp(std::shared_ptr<const Kernel> kernel, const ResidualGpSettings& settings)
@@ -83,15 +83,15 @@ class ResidualGp {
   Posterior posterior(const Places& places) const;
 
   /// Returns the prior covariance of g between all rows, with the signal of the last fit and without noise.
-  Eigen::MatrixXd covariance(const std::vector<Row>& rows) const {
-    const ResidualKernel::Table table = ResidualKernel::table_of(rows);
+  Eigen::MatrixXd covariance(const std::vector<ResidualDatum>& rows) const {
+    const ResidualKernel::DatumTable table = ResidualKernel::table_of(rows);
     return kernel_.covariances(table, table);
   }
   /// Returns the standard deviation of a contact, metres.
   double noise() const { return settings_.noise; }
 
   /// Returns the data in use: contacts, normals, and the points of free paths that hold the surface back.
-  const std::vector<Row>& rows() const { return known_.rows; }
+  const std::vector<ResidualDatum>& rows() const { return known_.rows; }
   /// Returns the free paths of the last fit. Points that hold the surface back are among rows().
   const FreePaths& free_paths() const { return free_paths_; }
 
@@ -101,8 +101,8 @@ class ResidualGp {
 
  private:
   /// Factorises with as much jitter as needed. If no jitter is sufficient, leaves rows out.
-  void take_in(std::vector<Row> rows);
-  std::vector<Row> contacts_of(const Assembly& solids, const std::vector<SurfaceTouch>& touches) const;
+  void take_in(std::vector<ResidualDatum> rows);
+  std::vector<ResidualDatum> contacts_of(const Assembly& solids, const std::vector<SurfaceTouch>& touches) const;
 
   ResidualKernel kernel_;
   ResidualGpSettings settings_;

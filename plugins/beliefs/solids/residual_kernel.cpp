@@ -49,11 +49,11 @@ ResidualKernel::ResidualKernel(std::shared_ptr<const Kernel> kernel) : kernel_(s
   kernel_->variance(Points::Zero(1, 2), Eigen::Map<VectorXd>(&unit_, 1));
 }
 
-ResidualKernel::Table ResidualKernel::table_of(const std::vector<Row>& rows) {
+ResidualKernel::DatumTable ResidualKernel::table_of(const std::vector<ResidualDatum>& rows) {
   const auto n = static_cast<Eigen::Index>(rows.size());
-  Table out{Eigen::MatrixX3d(n, 3), Eigen::MatrixX3d(n, 3), Eigen::MatrixX3d(n, 3)};
+  DatumTable out{Eigen::MatrixX3d(n, 3), Eigen::MatrixX3d(n, 3), Eigen::MatrixX3d(n, 3)};
   for (Eigen::Index i = 0; i < n; ++i) {
-    const Row& row = rows[static_cast<std::size_t>(i)];
+    const ResidualDatum& row = rows[static_cast<std::size_t>(i)];
     out.at.row(i) = row.place.at;
     out.normal.row(i) = row.place.normal;
     out.along.row(i) = row.along;
@@ -62,14 +62,14 @@ ResidualKernel::Table ResidualKernel::table_of(const std::vector<Row>& rows) {
   return out;
 }
 
-MatrixXd ResidualKernel::covariances(const Table& a, const Table& b) const {
+MatrixXd ResidualKernel::covariances(const DatumTable& a, const DatumTable& b) const {
   MatrixXd out(a.at.rows(), b.at.rows());
   Points apart = Points::Zero(out.size(), 2);
   covariances(a, b, apart, out);
   return out;
 }
 
-void ResidualKernel::covariances(const Table& a, const Table& b, Points& apart, MatrixOut out) const {
+void ResidualKernel::covariances(const DatumTable& a, const DatumTable& b, Points& apart, MatrixOut out) const {
   const Eigen::Index n = a.at.rows();
   const Eigen::Index m = b.at.rows();
   for (Eigen::Index j = 0; j < m; ++j) {

@@ -30,7 +30,7 @@ class ResidualKernel {
   using Places = std::vector<Place>;
 
   /// A datum: the value of g or, if `along` is not 0, its slope in that direction.
-  struct Row {
+  struct ResidualDatum {
     Place place;
     Eigen::Vector3d along = Eigen::Vector3d::Zero();
     double target = 0.0;
@@ -39,11 +39,11 @@ class ResidualKernel {
   };
 
   /// Rows as matrices: the places, normals and directions of slopes, one row per datum.
-  struct Table {
+  struct DatumTable {
     Eigen::MatrixX3d at, normal, along;
     bool slopes = false;
   };
-  static Table table_of(const std::vector<Row>& rows);
+  static DatumTable table_of(const std::vector<ResidualDatum>& rows);
 
   bool has_gradient() const { return kernel_->has_gradient(); }
   void set_signal(double signal) { signal_ = signal; }
@@ -52,15 +52,15 @@ class ResidualKernel {
   double deviation() const { return signal_ * std::sqrt(unit_); }
 
   /// Returns the prior covariances of g.
-  Eigen::MatrixXd covariances(const Table& a, const Table& b) const;
+  Eigen::MatrixXd covariances(const DatumTable& a, const DatumTable& b) const;
   /// Calls use(index of the first place, number of places, their covariances with the table) for blocks of places.
   template <class Use>
-  void for_blocks(const Places& places, const Table& table, const Use& use) const;
+  void for_blocks(const Places& places, const DatumTable& table, const Use& use) const;
 
  private:
   /// Writes the covariances to `out`, whose columns must be contiguous. `apart` is scratch space with one row per pair;
   /// its second column must be 0.
-  void covariances(const Table& a, const Table& b, Points& apart, MatrixOut out) const;
+  void covariances(const DatumTable& a, const DatumTable& b, Points& apart, MatrixOut out) const;
 
   std::shared_ptr<const Kernel> kernel_;
   double unit_ = 1.0;  ///< variance of the kernel
@@ -68,13 +68,13 @@ class ResidualKernel {
 };
 
 template <class Use>
-void ResidualKernel::for_blocks(const Places& places, const Table& table, const Use& use) const {
+void ResidualKernel::for_blocks(const Places& places, const DatumTable& table, const Use& use) const {
   const Eigen::Index n = table.at.rows();
   loops::AlignedArray numbers(static_cast<std::size_t>(n * loops::kBlock));
   const Eigen::Map<Eigen::MatrixXd> rows(numbers.data(), loops::kBlock, n);
   Points apart = Points::Zero(n * loops::kBlock, 2);
   for (std::size_t first = 0; first < places.size(); first += loops::kBlock) {
-    std::vector<Row> some;
+    std::vector<ResidualDatum> some;
     for (std::size_t i = first; i < first + loops::kBlock; ++i)  // repeats the last place if the block is not full
       some.push_back({places[std::min(i, places.size() - 1)]});
     covariances(table_of(some), table, apart, rows);

@@ -121,7 +121,8 @@ double Assembly::distance(const Vector3d& point) const {
   return least;
 }
 
-Solids::Solids(const Area& area, const SolidsSettings& settings, Random random) : settings_(settings), random_(random) {
+AssemblySampler::AssemblySampler(const Area& area, const AssemblySamplerSettings& settings, Random random)
+    : settings_(settings), random_(random) {
   const double middle = std::min(area.width, area.depth);
   for (int i = 0; i < settings.count; ++i) {
     Assembly one;
@@ -135,7 +136,7 @@ Solids::Solids(const Area& area, const SolidsSettings& settings, Random random) 
   }
 }
 
-double Solids::prior_of(const Primitive& primitive) const {
+double AssemblySampler::prior_of(const Primitive& primitive) const {
   double out = -settings_.primitives;
   const Vector3d up = primitive.turn * Vector3d::UnitZ();
   const double tilt = std::abs(up.z());
@@ -154,7 +155,7 @@ double Solids::prior_of(const Primitive& primitive) const {
   return out;
 }
 
-void Solids::look(Assembly::Part& part, std::size_t from) const {
+void AssemblySampler::look(Assembly::Part& part, std::size_t from) const {
   part.reach.resize(touches_.size());
   part.depth.resize(touches_.size());
   for (std::size_t i = from; i < touches_.size(); ++i) {
@@ -164,13 +165,13 @@ void Solids::look(Assembly::Part& part, std::size_t from) const {
   }
 }
 
-const Assembly& Solids::best() const {
+const Assembly& AssemblySampler::best() const {
   return *std::max_element(all_.begin(), all_.end(), [](const Assembly& one, const Assembly& other) {
     return one.posterior() < other.posterior();
   });
 }
 
-Eigen::VectorXd Solids::offsets(const Vector3d& at) const {
+Eigen::VectorXd AssemblySampler::offsets(const Vector3d& at) const {
   constexpr double kFarthest = 0.02;
   const double here = best().distance(at);
   Eigen::VectorXd out(static_cast<Eigen::Index>(all_.size()));
@@ -179,7 +180,7 @@ Eigen::VectorXd Solids::offsets(const Vector3d& at) const {
   return out;
 }
 
-std::vector<Primitive> Solids::undiscovered(const Assembly& one, int draws, Random& random) const {
+std::vector<Primitive> AssemblySampler::undiscovered(const Assembly& one, int draws, Random& random) const {
   constexpr double kClear = 0.001;
   // Largest cost of a draw beyond settings_.primitives, nats. It covers stance, size and wall of any primitive above
   // the desk. Primitives that reach into the desk cost more.
@@ -200,12 +201,12 @@ std::vector<Primitive> Solids::undiscovered(const Assembly& one, int draws, Rand
   return out;
 }
 
-void Solids::add(const std::vector<SurfaceTouch>& touches) {
+void AssemblySampler::add(const std::vector<SurfaceTouch>& touches) {
   take_in(touches);
   move_all();
 }
 
-void Solids::look(const std::vector<SurfaceTouch>& view) {
+void AssemblySampler::look(const std::vector<SurfaceTouch>& view) {
   constexpr int kRounds = 15;
   constexpr int kCooling = 10;
   constexpr double kFlat = 0.05;
@@ -218,20 +219,20 @@ void Solids::look(const std::vector<SurfaceTouch>& view) {
   }
 }
 
-void Solids::take_in(const std::vector<SurfaceTouch>& touches) {
+void AssemblySampler::take_in(const std::vector<SurfaceTouch>& touches) {
   const std::size_t before = touches_.size();
   touches_.insert(touches_.end(), touches.begin(), touches.end());
   weigh(before);
 }
 
-void Solids::read_again(const std::vector<SurfaceTouch>& touches, double misfit, double most) {
+void AssemblySampler::read_again(const std::vector<SurfaceTouch>& touches, double misfit, double most) {
   touches_ = touches;
   settings_.misfit = misfit;
   settings_.most = most;
   weigh(0);
 }
 
-void Solids::weigh(std::size_t from) {
+void AssemblySampler::weigh(std::size_t from) {
   order_.resize(touches_.size());
   std::iota(order_.begin(), order_.end(), std::size_t{0});
   std::vector<double> weights;
@@ -244,15 +245,15 @@ void Solids::weigh(std::size_t from) {
   resample(weights);
 }
 
-void Solids::move_all() {
+void AssemblySampler::move_all() {
   for (Assembly& one : all_) move(one);
 }
 
-double Solids::least_likelihood(const Assembly& one, double prior_gained) {
+double AssemblySampler::least_likelihood(const Assembly& one, double prior_gained) {
   return one.likelihood + (math::log(1.0 - random_.uniform()) - prior_gained) / power_;
 }
 
-void Solids::resample(const std::vector<double>& weights) {
+void AssemblySampler::resample(const std::vector<double>& weights) {
   const double most = *std::max_element(weights.begin(), weights.end());
   std::vector<double> shares;
   double total = 0.0;
@@ -277,7 +278,8 @@ void Solids::resample(const std::vector<double>& weights) {
 }
 
 /// Uses Student's t distribution with three degrees of freedom, because the simple solids only approximate the objects.
-double Solids::likelihood_with(const Assembly& one, std::size_t which, const Primitive* primitive, double least) {
+double AssemblySampler::likelihood_with(const Assembly& one, std::size_t which, const Primitive* primitive,
+                                        double least) {
   constexpr double kTails = 3.0;
   constexpr double kFarthest = 0.3;
   constexpr std::size_t kAtOnce = 8;  // number of factors per logarithm
@@ -318,7 +320,7 @@ double Solids::likelihood_with(const Assembly& one, std::size_t which, const Pri
   return sum < least ? -kNoHit : sum;
 }
 
-void Solids::move(Assembly& one) {
+void AssemblySampler::move(Assembly& one) {
   constexpr double kBirths = 0.1;
   order_.resize(touches_.size());
   std::iota(order_.begin(), order_.end(), std::size_t{0});
@@ -359,7 +361,7 @@ void Solids::move(Assembly& one) {
 }
 
 /// Adds a primitive at one of the touches that are explained worst.
-void Solids::give_birth(Assembly& one) {
+void AssemblySampler::give_birth(Assembly& one) {
   constexpr std::size_t kMost = 7;
   if (one.parts.size() >= kMost || touches_.empty()) return;
   const auto reach = [&](std::size_t i) {
@@ -386,7 +388,7 @@ void Solids::give_birth(Assembly& one) {
   one.prior += prior;
 }
 
-void Solids::take_away(Assembly& one) {
+void AssemblySampler::take_away(Assembly& one) {
   if (one.parts.size() < 2) return;
   const std::size_t which = random_.index(one.parts.size());
   const double least = least_likelihood(one, -one.parts[which].prior);
@@ -399,7 +401,7 @@ void Solids::take_away(Assembly& one) {
 }
 
 /// Moves the face nearest to a random contact towards it; the opposite face stays.
-bool Solids::fit_to_contact(Primitive& primitive) {
+bool AssemblySampler::fit_to_contact(Primitive& primitive) {
   const SurfaceTouch& touch = touches_[random_.index(touches_.size())];
   if (!touch.contact || touch.desk) return false;
   const Vector3d at = primitive.turn.transpose() * (touch.end() - primitive.centre);
@@ -428,7 +430,7 @@ bool Solids::fit_to_contact(Primitive& primitive) {
 }
 
 /// Changes a primitive at random. Returns false if the change is impossible.
-bool Solids::change(Primitive& primitive) {
+bool AssemblySampler::change(Primitive& primitive) {
   const double kind = random_.uniform();
   const double size = math::exp(between(math::log(0.0005), math::log(0.03), random_));
   const auto axis = static_cast<Eigen::Index>(random_.index(3));

@@ -16,7 +16,7 @@
 
 namespace palpate {
 
-struct SolidsSettings {
+struct AssemblySamplerSettings {
   int count = 24;           ///< number of assemblies
   int moves = 1000;         ///< number of moves per assembly and touch; fewer after the 40th touch
   double misfit = 0.002;    ///< standard deviation of touches from the simple solids, which approximate objects, metres
@@ -45,9 +45,9 @@ struct Assembly {
   Eigen::Vector3d normal(const Eigen::Vector3d& point) const;
 };
 
-class Solids {
+class AssemblySampler {
  public:
-  Solids(const Area& area, const SolidsSettings& settings, Random random);
+  AssemblySampler(const Area& area, const AssemblySamplerSettings& settings, Random random);
 
   /// Adds touches that were made at the same time: one or a few.
   void add(const std::vector<SurfaceTouch>& touches);
@@ -90,7 +90,7 @@ class Solids {
   bool change(Primitive& primitive);
   bool fit_to_contact(Primitive& primitive);
 
-  SolidsSettings settings_;
+  AssemblySamplerSettings settings_;
   Random random_;
   std::vector<SurfaceTouch> touches_;
   std::size_t seen_ = 0;     ///< number of touches_ that come from a view

@@ -27,8 +27,8 @@ constexpr double kMostCost = 6.5;
 
 constexpr std::int64_t kLines = 2000;  // drawn before each tap
 
-SolidsSettings settings_of(const SolidsOptions& options) {
-  SolidsSettings out;
+AssemblySamplerSettings settings_of(const SolidsOptions& options) {
+  AssemblySamplerSettings out;
   out.count = static_cast<int>(options.particles);
   out.moves = static_cast<int>(options.moves);
   out.misfit = options.model_discrepancy;

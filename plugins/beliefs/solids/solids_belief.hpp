@@ -66,12 +66,12 @@ class SolidsBelief final : public Belief {
  private:
   const Context& context_;
   const SolidsOptions options_;
-  Region region_;
+  SearchBall region_;
   TouchLog touches_;
-  Solids solids_;
+  AssemblySampler solids_;
   ResidualGp residual_gp_;
   SampledLines lines_;
-  LineValues values_;
+  CandidateQuantities values_;
   SurfaceErrors errors_;
   ReadPlan plan_;
   std::set<Stage> begun_;

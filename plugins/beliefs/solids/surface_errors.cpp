@@ -15,7 +15,8 @@ constexpr double kCube = 0.004;
 
 }  // namespace
 
-Cloud surface_points(const Bundle& lines, double side, const Solids& solids, const ResidualGp& residual_gp) {
+Cloud surface_points(const LineBundle& lines, double side, const AssemblySampler& solids,
+                     const ResidualGp& residual_gp) {
   const Assembly& best = solids.best();
   Cloud points;
   for (const Line& line : lines.lines) {
@@ -34,7 +35,7 @@ Cloud surface_points(const Bundle& lines, double side, const Solids& solids, con
   return out;
 }
 
-Eigen::VectorXd surface_std(const Cloud& points, const Solids& solids, const ResidualGp& residual_gp) {
+Eigen::VectorXd surface_std(const Cloud& points, const AssemblySampler& solids, const ResidualGp& residual_gp) {
   ResidualGp::Places places;
   for (const Eigen::Vector3d& at : points) places.push_back({at, solids.best().normal(at)});
   Eigen::VectorXd squares = residual_gp.posterior(places).variance;
@@ -44,7 +45,7 @@ Eigen::VectorXd surface_std(const Cloud& points, const Solids& solids, const Res
   return squares.cwiseSqrt();
 }
 
-SurfaceErrors::SurfaceErrors(const Region& region)
+SurfaceErrors::SurfaceErrors(const SearchBall& region)
     : lines_(region.centre, region.outside(), kDirections, kPitch), cubes_(region.centre, region.outside(), kCube) {}
 
 void SurfaceErrors::set_truth(const Scene* scene) {
@@ -66,7 +67,7 @@ const SurfaceErrors::Truth& SurfaceErrors::truth() {
   return *truth_;
 }
 
-Errors SurfaceErrors::compare(const Solids* solids, const ResidualGp& residual_gp) {
+Errors SurfaceErrors::compare(const AssemblySampler* solids, const ResidualGp& residual_gp) {
   if (truth().points.empty()) return {};
   const Cloud points = solids != nullptr ? surface_points(lines_, kSide, *solids, residual_gp) : Cloud();
   const CloudErrors errors = compare_clouds(points, truth().points);
@@ -82,7 +83,7 @@ Errors SurfaceErrors::compare(const Solids* solids, const ResidualGp& residual_g
   return out;
 }
 
-std::optional<double> SurfaceErrors::coverage(const Cloud& points, const Solids& solids,
+std::optional<double> SurfaceErrors::coverage(const Cloud& points, const AssemblySampler& solids,
                                               const ResidualGp& residual_gp) {
   if (points.empty()) return std::nullopt;
   constexpr double kOf95Percent = 1.96;

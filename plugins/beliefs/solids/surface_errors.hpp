@@ -20,23 +20,24 @@ namespace palpate {
 
 /// Returns the points where `lines` first meet the surface of the solids with the residual GP: at most one per cube
 /// with this side (metres). Heights are relative to the desk.
-Cloud surface_points(const Bundle& lines, double side, const Solids& solids, const ResidualGp& residual_gp);
+Cloud surface_points(const LineBundle& lines, double side, const AssemblySampler& solids,
+                     const ResidualGp& residual_gp);
 
 /// Returns the standard deviation of the surface near each of `points`, metres. It combines the variance of the
 /// residual GP with the distances of the other particles' surfaces, clipped to 2 cm.
-Eigen::VectorXd surface_std(const Cloud& points, const Solids& solids, const ResidualGp& residual_gp);
+Eigen::VectorXd surface_std(const Cloud& points, const AssemblySampler& solids, const ResidualGp& residual_gp);
 
 /// The true scene, and the lines and cubes for the comparison.
 class SurfaceErrors {
  public:
-  explicit SurfaceErrors(const Region& region);
+  explicit SurfaceErrors(const SearchBall& region);
 
   /// Sets the true scene in its current state; null if unknown. The scene must live until the next call.
   void set_truth(const Scene* scene);
 
   /// Returns the errors of a surface. If `solids` is null, no surface is estimated yet, and the whole true surface is
   /// missing. All errors are absent if the truth is unknown, or if no line meets it.
-  Errors compare(const Solids* solids, const ResidualGp& residual_gp);
+  Errors compare(const AssemblySampler* solids, const ResidualGp& residual_gp);
 
  private:
   struct Truth {
@@ -45,9 +46,9 @@ class SurfaceErrors {
   };
   const Truth& truth();
   /// Returns the share of points whose distance to the truth is within the 95 % interval.
-  std::optional<double> coverage(const Cloud& points, const Solids& solids, const ResidualGp& residual_gp);
+  std::optional<double> coverage(const Cloud& points, const AssemblySampler& solids, const ResidualGp& residual_gp);
 
-  Bundle lines_;
+  LineBundle lines_;
   Cubes cubes_;
   const Scene* scene_ = nullptr;
   std::optional<Truth> truth_;

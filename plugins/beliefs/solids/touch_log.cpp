@@ -17,24 +17,24 @@ void TouchLog::look(std::vector<SurfaceTouch> seen, bool shows_object) {
   is_object_seen_ = shows_object;
 }
 
-std::optional<TouchLog::Reported> TouchLog::reported(const TapRequest& request, const TapResult& result) const {
+std::optional<TouchLog::ReportedTouch> TouchLog::reported(const TapRequest& request, const TapResult& result) const {
   if (result.outcome != Outcome::contact && result.outcome != Outcome::no_contact) return std::nullopt;
   SurfaceTouch touch;
   touch.line = {request.line.start - Eigen::Vector3d(0.0, 0.0, desk_), request.line.direction};
   touch.length = result.distance.value_or(request.line.length);
   touch.contact = result.is_contact();
   if (!touch.contact && touch.end().z() < -kFeltLate) return std::nullopt;
-  return Reported{touch, result.force, request.number};
+  return ReportedTouch{touch, result.force, request.number};
 }
 
 std::optional<TapReading> TouchLog::read(const TapRequest& request, const TapResult& result) const {
-  const std::optional<Reported> one = reported(request, result);
+  const std::optional<ReportedTouch> one = reported(request, result);
   return one ? std::optional(reading(overtravel_.read(one->touch, one->force), one->tap)) : std::nullopt;
 }
 
 void TouchLog::add(const TapRequest& request, const TapResult& result) {
   taps_.add(request);
-  const std::optional<Reported> one = reported(request, result);
+  const std::optional<ReportedTouch> one = reported(request, result);
   if (!one) return;
   reported_.push_back(*one);
   const double before = overtravel_.spread();

@@ -46,17 +46,17 @@ class TouchLog {
   const Overtravel& overtravel() const { return overtravel_; }
 
  private:
-  struct Reported {
+  struct ReportedTouch {
     SurfaceTouch touch;  ///< touch as the arm reported it
     double force;
     int tap;
   };
-  std::optional<Reported> reported(const TapRequest& request, const TapResult& result) const;
+  std::optional<ReportedTouch> reported(const TapRequest& request, const TapResult& result) const;
   TapReading reading(const SurfaceTouch& touch, int tap) const;
 
   double desk_;
   Overtravel overtravel_;
-  std::vector<Reported> reported_;
+  std::vector<ReportedTouch> reported_;
   std::vector<SurfaceTouch> touches_;
   std::size_t seen_ = 0;
   bool is_object_seen_ = false;

@@ -23,7 +23,7 @@ Cubes::Held Cubes::of(const Scene& scene) const {
   for (int i = 0; i < across_; ++i) {
     for (int k = 0; k < across_; ++k, column += static_cast<std::size_t>(up_)) {
       const Line line{lowest_ + Vector3d(i * side_, k * side_, scene.desk()), Vector3d::UnitZ()};
-      for (const Stretch& stretch : scene.intervals(line)) {
+      for (const LineInterval& stretch : scene.intervals(line)) {
         const int last = std::min(up_ - 1, static_cast<int>(std::floor(stretch.end / side_)));
         for (int n = std::max(0, static_cast<int>(std::ceil(stretch.begin / side_))); n <= last; ++n)
           out[column + static_cast<std::size_t>(n)] = true;
@@ -35,7 +35,7 @@ Cubes::Held Cubes::of(const Scene& scene) const {
 
 namespace {
 
-struct Nearest {
+struct NearestPrimitive {
   double distance = kNoHit;   ///< distance to the assembly
   double clear = kNoHit;      ///< lower bound of the distance to any surface
   std::size_t primitive = 0;  ///< index of the primitive with this distance
@@ -70,8 +70,8 @@ class NearestPrimitive {
   }
 
   /// Returns the nearest primitive to a point, with distances in metres.
-  Nearest find(const Vector3d& at) const {
-    Nearest known;
+  NearestPrimitive find(const Vector3d& at) const {
+    NearestPrimitive known;
     for (std::size_t i = 0; i < shares_.size(); ++i) {
       const Primitive& primitive = solids_.parts[i].primitive;
       const double distance = primitive.distance(at);
@@ -94,9 +94,9 @@ class NearestPrimitive {
 
 /// Mean of the residual GP, which changes slowly. It is evaluated once per few cubes, for each primitive and each of
 /// six directions of the normal: neighbouring primitives may have parallel surfaces with different means.
-class ResidualGpNearby {
+class ResidualMeanCache {
  public:
-  ResidualGpNearby(const ResidualGp& residual_gp, double side) : residual_gp_(residual_gp), side_(kCubes * side) {}
+  ResidualMeanCache(const ResidualGp& residual_gp, double side) : residual_gp_(residual_gp), side_(kCubes * side) {}
 
   double mean(std::size_t which, const Primitive& primitive, const Vector3d& at) {
     const Vector3d facing = normal(primitive, at);
@@ -125,13 +125,13 @@ class ResidualGpNearby {
 Cubes::Held Cubes::of(const Assembly& solids, const ResidualGp& residual_gp) const {
   Held out(static_cast<std::size_t>(across_) * static_cast<std::size_t>(across_) * static_cast<std::size_t>(up_));
   const double band = residual_gp.reach();
-  ResidualGpNearby nearby(residual_gp, side_);
+  ResidualMeanCache nearby(residual_gp, side_);
   const NearestPrimitive nearest(solids);
   // Subdivides blocks of cubes until the surface is farther from their centre than their corners are.
   const auto fill = [&](const auto& self, int x, int y, int z, int size) -> void {
     if (x >= across_ || y >= across_ || z >= up_) return;
     const Vector3d at = lowest_ + side_ * (Vector3d(x, y, z) + Vector3d::Constant(0.5 * (size - 1)));
-    const Nearest found = nearest.find(at);
+    const NearestPrimitive found = nearest.find(at);
     if (size > 1 && found.clear <= band + 0.5 * std::sqrt(3.0) * (size - 1) * side_) {
       const int half = size / 2;
       for (int part = 0; part < 8; ++part)

@@ -148,7 +148,7 @@ Eigen::MatrixXd metric_at(Objective& objective, const Eigen::VectorXd& result) {
 /// Returns a start for the ascent without random numbers: the best of `now` and a grid of length scales and noises,
 /// each with its best signals. A likelihood has a wide, flat region in which all data is noise, and an ascent never
 /// leaves this region.
-Eigen::VectorXd look_around(Objective& objective, const Model& model, const Eigen::VectorXd& now,
+Eigen::VectorXd look_around(Objective& objective, const FitModel& model, const Eigen::VectorXd& now,
                             const std::vector<HyperPrior>& expectations) {
   constexpr int kLengths = 4;
   // squared noise ratios of a surface with little noise and of one with much noise
@@ -195,7 +195,7 @@ Eigen::VectorXd random_start(const std::vector<HyperPrior>& expectations, Random
 bool better(const AscentResult& a, const AscentResult& b) { return a.valid && (!b.valid || a.value > b.value); }
 
 /// Returns a text about the results of all starts.
-std::string describe(const std::vector<AscentResult>& results, const Model& model) {
+std::string describe(const std::vector<AscentResult>& results, const FitModel& model) {
   std::string values;
   for (const AscentResult& result : results) {
     values += values.empty() ? "" : " / ";
@@ -220,7 +220,7 @@ class Ceres final : public Fitting {
   }
 
   FitSummary fit(FitProblem& problem, Random& random) const override {
-    const Model model = model_of(problem, options_.mean == Options::Mean::fit);
+    const FitModel model = model_of(problem, options_.mean == Options::Mean::fit);
     if (model.outputs() == 0) return {false, false, 0.0, 0, "the targets equal the mean and contain no information"};
     const std::vector<HyperPrior> expected = expectations(model);
     if (options_.priors == Options::Priors::none &&
@@ -252,7 +252,7 @@ class Ceres final : public Fitting {
   }
 
  private:
-  std::vector<HyperPrior> expectations(const Model& model) const {
+  std::vector<HyperPrior> expectations(const FitModel& model) const {
     // A scene has steps at the edges of its objects, and no stationary kernel can follow these. The surface looks
     // smoother at the taps than it is elsewhere. With few taps, the likelihood alone therefore favours length scales
     // that are too long and signals that are too small, and the uncertainty becomes too small. framework/docs/runs.md
@@ -273,14 +273,14 @@ class Ceres final : public Fitting {
     return out;
   }
 
-  Objective objective_of(const Model& model, const std::vector<HyperPrior>& expected) const {
+  Objective objective_of(const FitModel& model, const std::vector<HyperPrior>& expected) const {
     return {model, options_.objective, expected, options_.priors == Options::Priors::touch};
   }
 
   /// Returns the optimum. If possible, finds it by an ascent from the present values `now`, otherwise by a search.
   /// `known`: whether the objective is finite at `now`. Updates `memory`, which may be null, and the reason and the
   /// number of evaluations in `summary`.
-  AscentResult optimum(const Model& model, Objective& objective, const std::vector<HyperPrior>& expected,
+  AscentResult optimum(const FitModel& model, Objective& objective, const std::vector<HyperPrior>& expected,
                        const Eigen::VectorXd& now, bool known, std::vector<double>* memory, Random& random,
                        FitSummary& summary) const {
     const Memory last = memory != nullptr ? Memory::of(*memory, now.size()) : Memory();
@@ -308,7 +308,7 @@ class Ceres final : public Fitting {
 
   /// Returns the optima of all ascents, with the best one first. `objective` must belong to `model`. Evaluations of the
   /// objectives of subsets are added to `evaluations`.
-  std::vector<AscentResult> search(const Model& model, Objective& objective, const std::vector<HyperPrior>& expected,
+  std::vector<AscentResult> search(const FitModel& model, Objective& objective, const std::vector<HyperPrior>& expected,
                                    const Eigen::VectorXd& now, Random& random, int& evaluations) const {
     std::vector<AscentResult> results;
     if (model.size() <= kPart) {
@@ -320,7 +320,7 @@ class Ceres final : public Fitting {
     } else {
       // A subset of the points determines region and curvature. Then all points decide which optimum of the subset is
       // the best.
-      const Model part = part_of(model, kPart / 2);
+      const FitModel part = part_of(model, kPart / 2);
       Objective rough = objective_of(part, expected);
       results = search(part, rough, expected, now, random, evaluations);
       for (AscentResult& result : results)

@@ -31,13 +31,13 @@ double product(const double* a, const double* b, Eigen::Index lines) {
 
 }  // namespace
 
-double Model::total(double value) const {
+double FitModel::total(double value) const {
   const auto n = static_cast<double>(size());
   return value * n * static_cast<double>(outputs()) - n * scales.unaryExpr(&math::log).sum();
 }
 
-Model model_of(const FitProblem& problem, bool fit_means) {
-  Model model{problem.points, {}, {}, {}, problem.kernel, problem.mean_ratio, {}, fit_means, {}};
+FitModel model_of(const FitProblem& problem, bool fit_means) {
+  FitModel model{problem.points, {}, {}, {}, problem.kernel, problem.mean_ratio, {}, fit_means, {}};
   const bool open = fit_means || problem.mean_ratio > 0.0;
   for (std::size_t i = 0; i < problem.outputs.size(); ++i) {
     const FitOutput& output = problem.outputs[i];
@@ -56,8 +56,8 @@ Model model_of(const FitProblem& problem, bool fit_means) {
   return model;
 }
 
-Model part_of(const Model& all, Eigen::Index least) {
-  Model part = all;
+FitModel part_of(const FitModel& all, Eigen::Index least) {
+  FitModel part = all;
   const Eigen::Index count = std::max(least, all.size() / 2);
   part.points.resize(count, 2);
   part.targets.resize(count, all.outputs());
@@ -68,7 +68,7 @@ Model part_of(const Model& all, Eigen::Index least) {
   return part;
 }
 
-Eigen::VectorXd present(const FitProblem& problem, const Model& model) {
+Eigen::VectorXd present(const FitProblem& problem, const FitModel& model) {
   const std::vector<KernelParameter> parameters = problem.kernel.parameters();
   const auto count = static_cast<Eigen::Index>(parameters.size());
   const Eigen::Index outputs = model.outputs();
@@ -83,7 +83,7 @@ Eigen::VectorXd present(const FitProblem& problem, const Model& model) {
   return x;
 }
 
-void take(const Eigen::VectorXd& x, const Model& model, FitProblem& problem) {
+void take(const Eigen::VectorXd& x, const FitModel& model, FitProblem& problem) {
   const Eigen::Index outputs = model.outputs();
   const Eigen::Index count = x.size() - 1 - outputs * (model.fit_means ? 2 : 1);
   problem.kernel.set_parameters(exponentials(x.data(), count));
@@ -95,7 +95,7 @@ void take(const Eigen::VectorXd& x, const Model& model, FitProblem& problem) {
   }
 }
 
-Objective::Objective(const Model& model, Measure measure, const std::vector<HyperPrior>& expectations, bool priors)
+Objective::Objective(const FitModel& model, Measure measure, const std::vector<HyperPrior>& expectations, bool priors)
     : model_(model),
       measure_(measure),
       expectations_(expectations),

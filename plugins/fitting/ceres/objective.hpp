@@ -19,7 +19,7 @@ namespace palpate::fitting {
 /// and of the squared signal per output. If `fit_means` is set, the mean per output follows. Targets, signals and means
 /// are relative to `centres` and in units of `scales`. All are therefore of order 1, and a fit does not depend on
 /// earlier fits.
-struct Model {
+struct FitModel {
   Points points;            ///< n x 2, metres
   Eigen::MatrixXd targets;  ///< n x m values: (target - centre) / scale
   Eigen::VectorXd centres;  ///< m values: prior mean, or mean of the targets if the prior mean is unknown
@@ -39,17 +39,17 @@ struct Model {
 
 /// Returns the model of a problem. Outputs whose targets are constant up to rounding carry no information and are left
 /// out, so m may be 0.
-Model model_of(const FitProblem& problem, bool fit_means);
+FitModel model_of(const FitProblem& problem, bool fit_means);
 
 /// Returns a model with every second point. If these are fewer than `least`, returns a model with `least` evenly spaced
 /// points.
-Model part_of(const Model& all, Eigen::Index least);
+FitModel part_of(const FitModel& all, Eigen::Index least);
 
 /// Returns the present hyperparameters of the problem as x. A noise of 0 becomes -infinity.
-Eigen::VectorXd present(const FitProblem& problem, const Model& model);
+Eigen::VectorXd present(const FitProblem& problem, const FitModel& model);
 
 /// Sets the hyperparameters of the problem to `x`.
-void take(const Eigen::VectorXd& x, const Model& model, FitProblem& problem);
+void take(const Eigen::VectorXd& x, const FitModel& model, FitProblem& problem);
 
 enum class Measure { log_marginal_likelihood, leave_one_out };
 
@@ -71,7 +71,7 @@ class Objective {
  public:
   /// `expectations` has one prior per hyperparameter. If `priors` is false, only their limits are used. The first and
   /// third argument must outlive the object.
-  Objective(const Model& model, Measure measure, const std::vector<HyperPrior>& expectations, bool priors);
+  Objective(const FitModel& model, Measure measure, const std::vector<HyperPrior>& expectations, bool priors);
 
   int size() const { return static_cast<int>(expectations_.size()); }
   int evaluations() const { return evaluations_; }
@@ -99,7 +99,7 @@ class Objective {
   void contract(double* gradient) const;
   double expectations(const double* x, double* gradient) const;
 
-  const Model& model_;
+  const FitModel& model_;
   Measure measure_;
   const std::vector<HyperPrior>& expectations_;
   bool priors_;
@@ -112,7 +112,7 @@ class Objective {
   Points places_;                    ///< points, extended to whole strips by copies of the last one
   /// Derivatives of K by the logarithm of each parameter. A strip is stored up to its diagonal tile, with all columns
   /// for the first parameter, then all columns for the next one.
-  std::vector<Line> slopes_;
+  std::vector<ColumnPack> slopes_;
   Eigen::VectorXd own_;       ///< n values: diagonal of K
   Eigen::MatrixXd standard_;  ///< n x m values: (targets - mean) / signal
   /// L^-1 * standard_ in whole strips. With an unknown mean, the mean is integrated out. After invert(), this is K^-1 *

@@ -235,7 +235,7 @@ bool factorise(StripMatrix& matrix, std::vector<double>& reciprocals) {
 
 void solve_lower(const StripMatrix& factor, VectorOut b) {
   for (Index s = 0; s < factor.strips(); ++s) {
-    Line sum{};
+    ColumnPack sum{};
     PALPATE_DISPATCH(times)(factor, s, 0, 8 * s, b.data(), sum.numbers);
     for (Index r = 0; r < std::min<Index>(8, factor.size() - 8 * s); ++r) {
       double& own = b(8 * s + r);
@@ -249,7 +249,7 @@ void solve_lower(const StripMatrix& factor, VectorOut b) {
 void invert_transposed(const StripMatrix& factor, const std::vector<double>& reciprocals, StripMatrix& out) {
   const Index strips = factor.strips();
   for (Index s = 0; s < strips; ++s) {
-    std::fill(out.at(s, 0), out.at(s, 0) + 8 * strips, Line{});
+    std::fill(out.at(s, 0), out.at(s, 0) + 8 * strips, ColumnPack{});
     for (Index r = 0; r < 8; ++r) out.at(s, 8 * s + r)->numbers[r] = 1.0;
   }
   PALPATE_DISPATCH(invert_transposed)(factor, reciprocals.data(), out);
@@ -257,14 +257,14 @@ void invert_transposed(const StripMatrix& factor, const std::vector<double>& rec
 
 void multiply_upper(const StripMatrix& upper, VectorOut b) {
   for (Index s = 0; s < upper.strips(); ++s) {
-    Line sum{};
+    ColumnPack sum{};
     PALPATE_DISPATCH(times)(upper, s, 8 * s, upper.size(), b.data(), sum.numbers);
     std::copy_n(sum.numbers, std::min<Index>(8, upper.size() - 8 * s), b.data() + 8 * s);
   }
 }
 
 void square_upper(const StripMatrix& upper, StripMatrix& out) {
-  for (Index s = 0; s < upper.strips(); ++s) std::fill(out.at(s, 0), out.at(s, 0) + 8 * (s + 1), Line{});
+  for (Index s = 0; s < upper.strips(); ++s) std::fill(out.at(s, 0), out.at(s, 0) + 8 * (s + 1), ColumnPack{});
   PALPATE_DISPATCH(square_upper)(upper, out);
 }
 

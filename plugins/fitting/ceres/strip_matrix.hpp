@@ -12,7 +12,7 @@
 namespace palpate::fitting {
 
 /// Eight consecutive rows of a column. This is one column of a strip, and one cache line.
-struct alignas(64) Line {
+struct alignas(64) ColumnPack {
   double numbers[8];
 };
 
@@ -26,8 +26,10 @@ class StripMatrix {
   Eigen::Index size() const { return size_; }
   Eigen::Index strips() const { return strips_; }
   /// Returns column `j` of strip `s`. The next column follows in memory.
-  Line* at(Eigen::Index s, Eigen::Index j) { return &lines_[static_cast<std::size_t>(s * stride() + j)]; }
-  const Line* at(Eigen::Index s, Eigen::Index j) const { return &lines_[static_cast<std::size_t>(s * stride() + j)]; }
+  ColumnPack* at(Eigen::Index s, Eigen::Index j) { return &lines_[static_cast<std::size_t>(s * stride() + j)]; }
+  const ColumnPack* at(Eigen::Index s, Eigen::Index j) const {
+    return &lines_[static_cast<std::size_t>(s * stride() + j)];
+  }
   double& operator()(Eigen::Index i, Eigen::Index j) { return at(i / 8, j)->numbers[i % 8]; }
   double operator()(Eigen::Index i, Eigen::Index j) const { return at(i / 8, j)->numbers[i % 8]; }
 
@@ -44,7 +46,7 @@ class StripMatrix {
 
   Eigen::Index size_;
   Eigen::Index strips_;
-  std::vector<Line> lines_;
+  std::vector<ColumnPack> lines_;
 };
 
 /// Replaces K by L with L * L^T = K, on the diagonal and below it. In diagonal tiles, the entries above the diagonal

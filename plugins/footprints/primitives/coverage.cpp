@@ -24,8 +24,8 @@ struct RowCut {
 };
 
 /// Copy of a form in single precision.
-struct SingleForm {
-  explicit SingleForm(const Form& form)
+struct FloatForm {
+  explicit FloatForm(const Form& form)
       : box(form.family == Form::Family::box),
         x(static_cast<float>(form.x)),
         y(static_cast<float>(form.y)),
@@ -55,7 +55,7 @@ HWY_INLINE Singles all(float value) { return hn::Set(kSingles, value); }
 HWY_INLINE Singles square(Singles x) { return hn::Mul(x, x); }
 
 /// See Form::depth().
-HWY_INLINE Singles depth(const SingleForm& form, Singles x, Singles y) {
+HWY_INLINE Singles depth(const FloatForm& form, Singles x, Singles y) {
   const float a = form.a;
   const float b = form.b;
   const Singles dx = hn::Sub(x, all(form.x));
@@ -85,8 +85,8 @@ void steps(const Primitive& primitive, float per_metre, const float* x, const fl
   const hn::RebindToSigned<decltype(kSingles)> numbers;
   const hn::Rebind<LabelModel::Step, decltype(kSingles)> bytes;
   constexpr float kSteps = LabelModel::kSteps;
-  const SingleForm form(primitive.form);
-  const SingleForm hole(primitive.hole);
+  const FloatForm form(primitive.form);
+  const FloatForm hole(primitive.hole);
   for (int i = 0; i < count; i += static_cast<int>(hn::Lanes(kSingles))) {
     const Singles xs = hn::LoadU(kSingles, x + i);
     const Singles ys = hn::LoadU(kSingles, y + i);
@@ -144,7 +144,7 @@ void count_overlaps(const Hypothesis& hypothesis, const FormTable& table, float*
     const Singles cosine = of(table.cosine), sine = of(table.sine), ellipse = of(table.ellipse);
     auto any = hn::Lt(zero, zero);
     for (const Primitive& primitive : hypothesis.primitives) {
-      const SingleForm one(primitive.form);
+      const FloatForm one(primitive.form);
       const Singles one_a = all(one.a), one_b = all(one.b), one_c = all(one.cosine), one_s = all(one.sine);
       const Singles dx = hn::Sub(x, all(one.x));
       const Singles dy = hn::Sub(y, all(one.y));
@@ -207,8 +207,8 @@ RowCut cut_of(const Form& form, double x0, double step_x, double y0, double step
 }
 
 /// Returns whether `test(i)`, 0 or 1, is 1 for any object tap.
-template <class Test>
-bool any_object(const Taps& taps, const Test& test) {
+template <class TapPredicate>
+bool any_object(const Taps& taps, const TapPredicate& test) {
   static_assert(LabelModel::kInside % 2 == 1);
   const LabelModel::Step* const labels = taps.labels();
   std::uint8_t any = 0;
@@ -279,7 +279,7 @@ bool hold_different_objects(const LabelModel::Step* one, const LabelModel::Step*
   return any_object(taps, [=](int i) { return LabelModel::inside(one[i]) != LabelModel::inside(other[i]); });
 }
 
-Grid::Grid(const PointsView& positions) : positions_(positions), x_(0.0, 0.0, 1), y_(0.0, 0.0, 1) {
+CoverageGrid::CoverageGrid(const PointsView& positions) : positions_(positions), x_(0.0, 0.0, 1), y_(0.0, 0.0, 1) {
   int columns = 1;
   while (columns < size() && positions_(columns, 1) == positions_(0, 1)) ++columns;
   regular_ = size() > 0 && size() % columns == 0;
@@ -289,7 +289,7 @@ Grid::Grid(const PointsView& positions) : positions_(positions), x_(0.0, 0.0, 1)
   regular_ = has_equal_steps();
 }
 
-bool Grid::has_equal_steps() const {
+bool CoverageGrid::has_equal_steps() const {
   constexpr double kLeast = 1e-6;  // metres: smaller steps may be rounding errors
   if (x_.step < kLeast || y_.step < kLeast) return false;
   for (int i = 0; i < size(); ++i) {
@@ -299,11 +299,11 @@ bool Grid::has_equal_steps() const {
   return true;
 }
 
-bool Grid::matches(const PointsView& positions) const {
+bool CoverageGrid::matches(const PointsView& positions) const {
   return positions.rows() == positions_.rows() && positions == positions_;
 }
 
-void Grid::add_spans(const Primitive& primitive, Spans& out) const {
+void CoverageGrid::add_spans(const Primitive& primitive, Spans& out) const {
   if (!regular_) {
     for (int i = 0; i < size(); ++i) {
       if (primitive.contains(positions_(i, 0), positions_(i, 1))) out.push_back({i, i + 1});
@@ -344,7 +344,7 @@ void Grid::add_spans(const Primitive& primitive, Spans& out) const {
   out.resize(count);
 }
 
-void Grid::add_spans(const ShortList<Primitive>& primitives, Spans& out) const {
+void CoverageGrid::add_spans(const ShortList<Primitive>& primitives, Spans& out) const {
   const auto first = static_cast<std::ptrdiff_t>(out.size());
   const auto earlier = [](const Span& one, const Span& other) { return one.begin < other.begin; };
   for (const Primitive& primitive : primitives) {
@@ -368,7 +368,7 @@ void FormTable::set(const std::vector<const Form*>& forms) {
   const std::size_t size = (forms.size() + kRound - 1) / kRound * kRound;
   for (auto* values : {&x, &y, &a, &b, &cosine, &sine, &ellipse}) values->assign(size, 0.0F);
   for (std::size_t i = 0; i < forms.size(); ++i) {
-    const SingleForm one(*forms[i]);
+    const FloatForm one(*forms[i]);
     x[i] = one.x;
     y[i] = one.y;
     a[i] = one.a;

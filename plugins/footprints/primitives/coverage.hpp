@@ -74,9 +74,9 @@ bool share_object(const LabelModel::Step* one, const LabelModel::Step* other, co
 bool hold_different_objects(const LabelModel::Step* one, const LabelModel::Step* other, const Taps& taps);
 
 /// Candidates or other positions, M x 2 metres.
-class Grid {
+class CoverageGrid {
  public:
-  explicit Grid(const PointsView& positions);
+  explicit CoverageGrid(const PointsView& positions);
 
   int size() const { return static_cast<int>(positions_.rows()); }
   bool matches(const PointsView& positions) const;
@@ -114,8 +114,8 @@ class GridSums {
  public:
   explicit GridSums(int size) : steps_(static_cast<std::size_t>(size) + 1, 0) {}
 
-  void add(const Grid::Spans& spans, std::int64_t value) {
-    for (const Grid::Span& span : spans) {
+  void add(const CoverageGrid::Spans& spans, std::int64_t value) {
+    for (const CoverageGrid::Span& span : spans) {
       steps_[static_cast<std::size_t>(span.begin)] += value;
       steps_[static_cast<std::size_t>(span.end)] -= value;
     }

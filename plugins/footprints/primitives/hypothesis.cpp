@@ -12,9 +12,9 @@ constexpr double kMostShare = 0.9;
 
 /// Half axes of nearly round ellipses. The short half axis is at least `shortest`; `range` is the length of the range
 /// of its logarithm.
-class NearlyRound {
+class NearlyRoundEllipses {
  public:
-  NearlyRound(double shortest, double range)
+  NearlyRoundEllipses(double shortest, double range)
       : shortest_(shortest), range_(range), most_(std::min(kMostLog, 0.5 * range)) {}
 
   /// `apart` and `size` are in [0, 1]; uniform values give uniform logarithms.
@@ -98,7 +98,7 @@ bool overlap(const Form& one, const Form& other) {
 void Primitive::fit_hole() {
   if (!fitted()) return;
   hole = form;
-  if (fit == Fit::concentric) {
+  if (fit == HolePlacement::concentric) {
     hole.a *= along;
     hole.b *= along;
     return;
@@ -117,7 +117,7 @@ void Primitive::fit_hole() {
 void Primitive::order_axes() {
   if (form.b <= form.a) return;
   form.order_axes();
-  if (fit == Fit::corner) std::swap(along, across);
+  if (fit == HolePlacement::corner) std::swap(along, across);
   std::tie(side_a, side_b) = std::pair(side_b, -side_a);
 }
 
@@ -165,7 +165,7 @@ Form Prior::draw_form(double longest, Random& random) const {
   out.family = random.uniform() < settings_.ellipses ? Form::Family::ellipse : Form::Family::box;
   if (out.family == Form::Family::ellipse && random.uniform() < settings_.round) {
     const double apart = random.uniform();
-    NearlyRound(shortest, range).set(out, apart, random.uniform());
+    NearlyRoundEllipses(shortest, range).set(out, apart, random.uniform());
   } else {
     std::tie(out.b, out.a) = std::minmax({half_axis(), half_axis()});
   }
@@ -201,7 +201,7 @@ void Prior::draw_hole(Primitive& primitive, Random& random) const {
     const auto share = [&] { return kLeastShare + (kMostShare - kLeastShare) * random.uniform(); };
     const auto side = [&] { return random.uniform() < 0.5 ? 1 : -1; };
     const bool corner = form.family == Form::Family::box && random.uniform() < 0.5;
-    primitive.fit = corner ? Primitive::Fit::corner : Primitive::Fit::concentric;
+    primitive.fit = corner ? Primitive::HolePlacement::corner : Primitive::HolePlacement::concentric;
     primitive.along = share();
     primitive.across = share();
     primitive.side_a = side();
@@ -209,7 +209,7 @@ void Prior::draw_hole(Primitive& primitive, Random& random) const {
     primitive.fit_hole();
     return;
   }
-  primitive.fit = Primitive::Fit::free;
+  primitive.fit = Primitive::HolePlacement::free;
   primitive.hole = draw_form(form.a, random);
   const Target centre = random_position(form, random);
   primitive.hole.x = centre.x;
@@ -259,7 +259,7 @@ double Prior::hole_centre_density(const Form& form, const Form& hole) const {
 double Prior::axes(const Form& form, double range) const {
   const double uniform = 2.0 / (range * range);
   if (form.family == Form::Family::box) return uniform / kPi;
-  const double round = NearlyRound(0.5 * settings_.min_width, range).density(form);
+  const double round = NearlyRoundEllipses(0.5 * settings_.min_width, range).density(form);
   return ((1.0 - settings_.round) * uniform + settings_.round * round) / kPi;
 }
 
@@ -268,7 +268,7 @@ double Prior::fitted_hole(const Primitive& primitive) const {
   const auto possible = [](double share) { return share > kLeastShare && share < kMostShare; };
   const bool box = primitive.form.family == Form::Family::box;
   if (!possible(primitive.along)) return 0.0;
-  if (primitive.fit == Primitive::Fit::concentric) return (box ? 0.5 : 1.0) * kUniform;
+  if (primitive.fit == Primitive::HolePlacement::concentric) return (box ? 0.5 : 1.0) * kUniform;
   // The factor 0.25 is the probability of one of four corners.
   return box && possible(primitive.across) ? 0.5 * 0.25 * kUniform * kUniform : 0.0;
 }

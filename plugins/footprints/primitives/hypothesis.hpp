@@ -64,12 +64,12 @@ bool overlap(const Form& one, const Form& other);
 /// A box or an ellipse, optionally with a hole that may extend beyond it. Examples: block, cylinder, ring, U, L.
 struct Primitive {
   /// Position of the hole: anywhere; in the middle, with the same family and proportions; or at a corner of a box.
-  enum class Fit { free, concentric, corner };
+  enum class HolePlacement { free, concentric, corner };
 
   Form form;
   Form hole;  ///< valid if `hollow`
   bool hollow = false;
-  Fit fit = Fit::free;
+  HolePlacement fit = HolePlacement::free;
   // Parameters of a fitted hole: fractions of the form's axes (only `along` if concentric), and the signs of its
   // corner.
   double along = 0.0, across = 0.0;
@@ -91,7 +91,7 @@ struct Primitive {
   }
 
   /// Returns whether the hole depends on the form; fit_hole() computes such a hole.
-  bool fitted() const { return hollow && fit != Fit::free; }
+  bool fitted() const { return hollow && fit != HolePlacement::free; }
   void fit_hole();
   /// Swaps the form's axes if `b` is longer; the covered region is unchanged.
   void order_axes();

@@ -81,10 +81,10 @@ struct PrimitivesOptions : LaplaceOptions {
   }
 };
 
-class Primitives final : public Footprint {
+class PrimitivesFootprint final : public Footprint {
  public:
   using Options = PrimitivesOptions;
-  Primitives(const Options& options, const Context& context)
+  PrimitivesFootprint(const Options& options, const Context& context)
       : options_(options),
         classifier_(options, context),
         sampler_(
@@ -177,7 +177,7 @@ class Primitives final : public Footprint {
   int replaced_at_ = 0;  ///< number of the tap at which gp_classifier took over; 0: not yet
 };
 
-PALPATE_PLUGIN(Footprint, Primitives, "primitives",
+PALPATE_PLUGIN(Footprint, PrimitivesFootprint, "primitives",
                "Bayesian inference of any number of boxes and ellipses. If the contacts contradict every such model, "
                "gp_classifier replaces the inference")
 

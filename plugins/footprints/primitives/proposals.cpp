@@ -49,9 +49,9 @@ struct Steps {
 };
 
 /// Random choice of a primitive, weighted towards those near the latest tap.
-class Choice {
+class PrimitiveChoice {
  public:
-  Choice(const ShortList<Primitive>& primitives, const Target& latest, Random& random) : latest_(latest) {
+  PrimitiveChoice(const ShortList<Primitive>& primitives, const Target& latest, Random& random) : latest_(latest) {
     if (primitives.size() == 1) return;
     std::array<double, ShortList<Primitive>::kMost> weights;
     for (int i = 0; i < primitives.size(); ++i) sum_ += weights[static_cast<std::size_t>(i)] = weight(primitives[i]);
@@ -203,7 +203,7 @@ void change_family(Form& form) {
 void change_fitted(Primitive& primitive, double which, const Steps& steps) {
   constexpr double kOtherCorner = 0.05;
   primitive.along += kHoleStep * steps.one;
-  if (primitive.fit != Primitive::Fit::corner) return;
+  if (primitive.fit != Primitive::HolePlacement::corner) return;
   primitive.across += kHoleStep * steps.other;
   if (which < kOtherCorner) (steps.coin ? primitive.side_a : primitive.side_b) *= -1;
 }
@@ -242,7 +242,7 @@ double change_part(Primitive& primitive, bool of_form, bool both, double which, 
 void change_form(Proposal& out, const Hypothesis& from, const Prior& prior, const Taps& taps, double which,
                  Random& random) {
   if (from.primitives.size() == 0) return;
-  const Choice choice(from.primitives, taps.size() == 0 ? Target{} : taps[taps.size() - 1], random);
+  const PrimitiveChoice choice(from.primitives, taps.size() == 0 ? Target{} : taps[taps.size() - 1], random);
   Primitive& primitive = out.change(from, choice.index());
   const double before = primitive.density;
   const double part = primitive.hollow ? random.uniform() : 0.0;

@@ -156,7 +156,7 @@ double Sampler::add(const Touch& touch) {
   likelihood_.add(touch);
   const Taps& taps = likelihood_.taps();
   prepared_ = false;
-  const Undiscovered::Covering covering = undiscovered_.covering(touch.place);
+  const UndiscoveredPrimitives::CoveringDraws covering = undiscovered_.covering(touch.place);
   const double p_new = 1.0 - math::exp(-covering.rate());
   std::vector<double> weights;
   weights.reserve(particles_.size());
@@ -195,7 +195,7 @@ double Sampler::add(const Touch& touch) {
 }
 
 /// Adds an undiscovered primitive at the tap to each particle, with its probability given the label.
-void Sampler::discover(const Undiscovered::Covering& covering, double p_new) {
+void Sampler::discover(const UndiscoveredPrimitives::CoveringDraws& covering, double p_new) {
   const Taps& taps = likelihood_.taps();
   const int tap = taps.size() - 1;
   Taps seen;

@@ -87,7 +87,7 @@ class Likelihood {
  private:
   bool has_heights_;
   std::array<LabelModel, 2> labels_;  ///< exact and noisy
-  HeightModel heights_;
+  TapHeightModel heights_;
   Taps taps_;
   std::vector<LabelModel::Step> steps_;  ///< scratch memory, like holders_
   std::vector<std::uint16_t> holders_;
@@ -162,7 +162,7 @@ class Sampler {
 
  private:
   void resample(const std::vector<double>& weights, double sum, std::size_t count);
-  void discover(const Undiscovered::Covering& covering, double p_new);
+  void discover(const UndiscoveredPrimitives::CoveringDraws& covering, double p_new);
   int count_moves(double effective_share) const;
   /// Computes spans_ for these positions.
   void prepare(const PointsView& positions);
@@ -176,11 +176,11 @@ class Sampler {
   std::uint64_t sample_seed_;
   Likelihood likelihood_;
   MarkovChain chain_;
-  Undiscovered undiscovered_;
+  UndiscoveredPrimitives undiscovered_;
   std::vector<Particle> particles_;
   int doubled_until_ = 0;  ///< number of taps until which the number of particles is doubled
   /// Cached positions that each particle covers, of the latest query; invalid after a tap.
-  std::vector<Grid::Spans> spans_;
+  std::vector<CoverageGrid::Spans> spans_;
   bool prepared_ = false;
 };
 

@@ -96,7 +96,7 @@ void Sampler::prepare(const PointsView& positions) {
 void Sampler::probability(const PointsView& positions, VectorOut out) {
   prepare(positions);
   GridSums counts(undiscovered_.grid().size());
-  for (const Grid::Spans& spans : spans_) counts.add(spans, 1);
+  for (const CoverageGrid::Spans& spans : spans_) counts.add(spans, 1);
   Eigen::VectorXd nothing_new = -undiscovered_.rates();
   math::exp(nothing_new.data(), nothing_new.size(), nothing_new.data());
   out = (1.0 - (1.0 - counts.values(1.0 / size()).array()) * nothing_new.array()).cwiseMax(0.0).cwiseMin(1.0);
@@ -112,7 +112,7 @@ void Sampler::sample(const PointsView& positions, int count, HypothesisSample& o
   for (int k = 0; k < count; ++k) {
     // First, bits mark the ends of spans. A prefix XOR then fills the spans.
     const std::uint64_t bit = std::uint64_t{1} << (k % 64);
-    for (const Grid::Span& span : spans_[static_cast<std::size_t>(drawn(k))]) {
+    for (const CoverageGrid::Span& span : spans_[static_cast<std::size_t>(drawn(k))]) {
       out.holds(k / 64, span.begin) ^= bit;
       if (span.end < positions.rows()) out.holds(k / 64, span.end) ^= bit;
     }
@@ -122,14 +122,14 @@ void Sampler::sample(const PointsView& positions, int count, HypothesisSample& o
   }
   out.expected_discovery_area = undiscovered_.expected_extent();
   // Undiscovered primitives that overlap no known primitive are other objects, which `expected_discovery_area` counts.
-  Grid::Spans spans;
-  for (const Undiscovered::Member& one : undiscovered_.draw(count, random)) {
+  CoverageGrid::Spans spans;
+  for (const UndiscoveredPrimitives::Member& one : undiscovered_.draw(count, random)) {
     const ShortList<Primitive>& known = particles_[static_cast<std::size_t>(drawn(one.set))].hypothesis.primitives;
     const auto overlaps = [&](const Primitive& other) { return overlap(other.form, one.primitive->form); };
     if (std::none_of(known.begin(), known.end(), overlaps)) continue;
     spans.clear();
     undiscovered_.grid().add_spans(*one.primitive, spans);
-    for (const Grid::Span& span : spans) {
+    for (const CoverageGrid::Span& span : spans) {
       for (int i = span.begin; i < span.end; ++i) out.holds(one.set / 64, i) |= std::uint64_t{1} << (one.set % 64);
     }
   }

@@ -73,7 +73,7 @@ LogUnits LabelModel::loss(const Step* steps, const Step* labels, int length) con
   return out;
 }
 
-void HeightModel::add(const Touch& touch) {
+void TapHeightModel::add(const Touch& touch) {
   std::vector<std::pair<double, std::size_t>> nearest;
   for (std::size_t i = 0; i < taps_.size(); ++i) {
     const double dx = touch.place.x - taps_[i].touch.place.x;
@@ -93,7 +93,7 @@ void HeightModel::add(const Touch& touch) {
   taps_.push_back(std::move(tap));
 }
 
-LogUnits HeightModel::evidence(const std::vector<std::uint16_t>& holders, int primitives) const {
+LogUnits TapHeightModel::evidence(const std::vector<std::uint16_t>& holders, int primitives) const {
   constexpr std::size_t kMost = 16;  // number of bits per entry of `holders`
   std::array<LogUnits, kMost> level{};
   std::array<LogUnits, kMost> slope{};

@@ -69,7 +69,7 @@ class LabelModel {
 /// sloped or arbitrary. On a level or sloped top, a height depends on the height of the nearest earlier tap in the same
 /// primitive: a Gaussian process with one neighbour (Vecchia 1988). The first tap of a primitive has an arbitrary
 /// height, or continues the height of the nearest earlier tap outside.
-class HeightModel {
+class TapHeightModel {
  public:
   /// Adds an object tap.
   void add(const Touch& touch);

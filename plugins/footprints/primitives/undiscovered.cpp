@@ -20,14 +20,14 @@ std::size_t draw_index(const std::vector<std::uint64_t>& cumulative, Random& ran
 
 }  // namespace
 
-Undiscovered::Undiscovered(const Prior& prior, Random& random)
+UndiscoveredPrimitives::UndiscoveredPrimitives(const Prior& prior, Random& random)
     : unit_(prior.settings().expected / (static_cast<double>(kDraws) * kWhole)) {
   draws_.reserve(kDraws);
   for (int i = 0; i < kDraws; ++i) draws_.push_back({prior.draw_primitive(random), kWhole, {}});
   update();
 }
 
-void Undiscovered::update() {
+void UndiscoveredPrimitives::update() {
   draws_.erase(std::remove_if(draws_.begin(), draws_.end(), [](const Draw& one) { return one.weight == 0; }),
                draws_.end());
   std::vector<const Form*> forms;
@@ -38,7 +38,8 @@ void Undiscovered::update() {
 }
 
 template <class Draws, class Visit>
-void Undiscovered::for_each_near(Draws& draws, const Target& position, double reach, const Visit& visit) const {
+void UndiscoveredPrimitives::for_each_near(Draws& draws, const Target& position, double reach,
+                                           const Visit& visit) const {
   const auto x = static_cast<float>(position.x);
   const auto y = static_cast<float>(position.y);
   const auto margin = static_cast<float>(reach * reach);
@@ -53,12 +54,12 @@ void Undiscovered::for_each_near(Draws& draws, const Target& position, double re
     visit(draws[static_cast<std::size_t>(one - near.begin())]);
 }
 
-const Primitive& Undiscovered::Covering::draw(Random& random) const {
+const Primitive& UndiscoveredPrimitives::CoveringDraws::draw(Random& random) const {
   return *primitives_[draw_index(cumulative_, random)];
 }
 
-Undiscovered::Covering Undiscovered::covering(const Target& position) const {
-  Covering out;
+UndiscoveredPrimitives::CoveringDraws UndiscoveredPrimitives::covering(const Target& position) const {
+  CoveringDraws out;
   std::uint64_t sum = 0;
   for_each_near(draws_, position, 0.0, [&](const Draw& one) {
     if (!one.primitive.contains(position.x, position.y)) return;
@@ -69,13 +70,13 @@ Undiscovered::Covering Undiscovered::covering(const Target& position) const {
   return out;
 }
 
-void Undiscovered::change(Draw& draw, Weight to) {
+void UndiscoveredPrimitives::change(Draw& draw, Weight to) {
   const std::int64_t more = std::int64_t{to} - std::int64_t{draw.weight};
   draw.weight = to;
   rates_.add(draw.spans, more);
 }
 
-void Undiscovered::add(const Touch& touch, const LabelModel& labels) {
+void UndiscoveredPrimitives::add(const Touch& touch, const LabelModel& labels) {
   const Target& place = touch.place;
   const double outside = labels.probability(LabelModel::kOutside, false);
   bool any_gone = false;
@@ -93,7 +94,7 @@ void Undiscovered::add(const Touch& touch, const LabelModel& labels) {
   if (any_gone) update();
 }
 
-bool Undiscovered::prepare(const PointsView& positions) {
+bool UndiscoveredPrimitives::prepare(const PointsView& positions) {
   if (grid_ && grid_->matches(positions)) return false;
   grid_.emplace(positions);
   rates_ = GridSums(grid_->size());
@@ -105,7 +106,7 @@ bool Undiscovered::prepare(const PointsView& positions) {
   return true;
 }
 
-Eigen::VectorXd Undiscovered::expected_extent() const {
+Eigen::VectorXd UndiscoveredPrimitives::expected_extent() const {
   constexpr double kExtentUnits = 0x1p24;  // units per square metre, so that sums are integers
   GridSums sums(grid_->size());
   for (std::size_t i = 0; i < draws_.size(); i += 2) {
@@ -116,13 +117,13 @@ Eigen::VectorXd Undiscovered::expected_extent() const {
   return sums.values(2.0 * unit_ / (kExtentUnits * static_cast<double>(known_)));
 }
 
-void Undiscovered::compare(const std::vector<const Hypothesis*>& known) {
+void UndiscoveredPrimitives::compare(const std::vector<const Hypothesis*>& known) {
   known_ = static_cast<std::int64_t>(known.size());
   std::fill(overlaps_.begin(), overlaps_.end(), 0.0F);
   for (const Hypothesis* one : known) count_overlaps(*one, forms_, overlaps_.data());
 }
 
-double Undiscovered::expected_apart(double length) const {
+double UndiscoveredPrimitives::expected_apart(double length) const {
   std::int64_t sum = 0;
   for (std::size_t i = 0; i < draws_.size(); ++i) {
     if (2.0 * draws_[i].primitive.form.a >= length) sum += draws_[i].weight * apart(i);
@@ -130,7 +131,7 @@ double Undiscovered::expected_apart(double length) const {
   return unit_ * static_cast<double>(sum) / static_cast<double>(known_);
 }
 
-std::vector<Undiscovered::Member> Undiscovered::draw(int count, Random& random) const {
+std::vector<UndiscoveredPrimitives::Member> UndiscoveredPrimitives::draw(int count, Random& random) const {
   std::vector<std::uint64_t> cumulative;
   cumulative.reserve(draws_.size());
   std::uint64_t sum = 0;

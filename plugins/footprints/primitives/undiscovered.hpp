@@ -18,12 +18,12 @@
 namespace palpate::footprints {
 
 /// Process of undiscovered primitives, represented by weighted draws from the prior.
-class Undiscovered {
+class UndiscoveredPrimitives {
  public:
-  Undiscovered(const Prior& prior, Random& random);
+  UndiscoveredPrimitives(const Prior& prior, Random& random);
 
   /// Draws that contain a position.
-  class Covering {
+  class CoveringDraws {
    public:
     /// Returns the expected number of undiscovered primitives at the position.
     double rate() const { return rate_; }
@@ -31,13 +31,13 @@ class Undiscovered {
     const Primitive& draw(Random& random) const;
 
    private:
-    friend class Undiscovered;
+    friend class UndiscoveredPrimitives;
     std::vector<const Primitive*> primitives_;
     std::vector<std::uint64_t> cumulative_;  ///< cumulative weights
     double rate_ = 0.0;
   };
   /// Returns the draws at `position`, valid until the next tap.
-  Covering covering(const Target& position) const;
+  CoveringDraws covering(const Target& position) const;
 
   /// Updates the weights with a tap at its original position. Each draw is weighted as if no other primitive could
   /// explain the label. If a known primitive also contains the desk tap, the weights become too small. Probabilities
@@ -52,7 +52,7 @@ class Undiscovered {
   /// positions of the last call.
   bool prepare(const PointsView& positions);
   /// Returns the prepared positions.
-  const Grid& grid() const { return *grid_; }
+  const CoverageGrid& grid() const { return *grid_; }
   /// Returns the rate at each of the prepared positions.
   Eigen::VectorXd rates() const { return rates_.values(unit_); }
   /// Returns for each prepared position an expected area in square metres. It is the area of all forms, with their
@@ -87,7 +87,7 @@ class Undiscovered {
   struct Draw {
     Primitive primitive;
     Weight weight;
-    Grid::Spans spans;
+    CoverageGrid::Spans spans;
   };
   void change(Draw& draw, Weight to);
   /// Removes draws of weight 0, which cannot recover, and prepares the others for compare().
@@ -102,7 +102,7 @@ class Undiscovered {
   std::vector<float> overlaps_;  ///< number of known hypotheses that each draw overlaps
   std::int64_t known_ = 1;       ///< number of these hypotheses
   double unit_;                  ///< expected number of primitives per unit of weight
-  std::optional<Grid> grid_;
+  std::optional<CoverageGrid> grid_;
   GridSums rates_{0};  ///< weights
 };
 

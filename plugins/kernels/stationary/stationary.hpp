@@ -61,11 +61,11 @@ inline void take_exponentials(Numbers numbers) { math::exp(numbers.data(), numbe
 ///     void bends(Numbers z) const;               z -> -d^2 f / dr^2, in place; its limit at r = 0, where slopes() must
 ///                                                be finite, too
 template <class Shape>
-class Stationary final : public Kernel {
+class StationaryKernel final : public Kernel {
  public:
   using Options = typename Shape::Options;
 
-  Stationary(const Options& options, const Context&)
+  StationaryKernel(const Options& options, const Context&)
       : shape_(options),
         along_x_(options.length_scale),
         along_y_(options.length_scale_y.value_or(options.length_scale)),

@@ -102,7 +102,7 @@ const BinaryNumber* scalar_named(const std::string& type) {
 }
 
 Grid from_npy(const std::string& bytes, const std::string& file) {
-  const std::optional<NpyPlace> place = npy_header_place(bytes);
+  const std::optional<NpyHeaderSpan> place = npy_header_place(bytes);
   if (!place || place->length > bytes.size() - place->begin)
     throw Error(file, "is not a NumPy array, or is cut short", kExportAgain);
   const std::size_t begin = place->begin + place->length;

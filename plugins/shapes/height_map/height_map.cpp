@@ -18,7 +18,7 @@ namespace palpate::shapes {
 
 using Eigen::Index;
 
-struct HeightMapOptions : Options {
+struct HeightMapShapeOptions : Options {
   std::string file;
   double unit = 0.001;
   double spacing = 0.001;
@@ -40,10 +40,10 @@ struct HeightMapOptions : Options {
   }
 };
 
-class HeightMap final : public Shape {
+class HeightMapShape final : public Shape {
  public:
-  using Options = HeightMapOptions;
-  HeightMap(const Options& options, const Context&) : spacing_(options.spacing) {
+  using Options = HeightMapShapeOptions;
+  HeightMapShape(const Options& options, const Context&) : spacing_(options.spacing) {
     const Grid all = read_grid(read_file(options.file, options.checksum), options.file);
     // Rows and columns of zeros around the object are removed, because they are desk. The nearest ones stay, because
     // the object slopes down to them.
@@ -63,13 +63,13 @@ class HeightMap final : public Shape {
 
   double first_intersection(const Line& line) const override {
     double out = kInfinity;
-    visit(line, [&](const Stretch& one) { return out = one.begin, false; });
+    visit(line, [&](const LineInterval& one) { return out = one.begin, false; });
     return out;
   }
 
-  std::vector<Stretch> intervals(const Line& line) const override {
-    std::vector<Stretch> out;
-    visit(line, [&](const Stretch& one) { return out.push_back(one), true; });
+  std::vector<LineInterval> intervals(const Line& line) const override {
+    std::vector<LineInterval> out;
+    visit(line, [&](const LineInterval& one) { return out.push_back(one), true; });
     return out;
   }
 
@@ -128,17 +128,17 @@ class HeightMap final : public Shape {
 
   /// Returns the part of the line that is above the rectangle, between the desk and the highest node. Returns nullopt
   /// if there is none.
-  std::optional<Stretch> clipped(const Line& line) const {
+  std::optional<LineInterval> clipped(const Line& line) const {
     Interval out;
     out.clip(line.origin.x(), line.direction.x(), -half_length_, half_length_);
     out.clip(line.origin.y(), line.direction.y(), -half_width_, half_width_);
     out.clip(line.origin.z(), line.direction.z(), 0.0, highest_);
-    return out.empty() ? std::nullopt : std::optional(Stretch{out.begin, out.end});
+    return out.empty() ? std::nullopt : std::optional(LineInterval{out.begin, out.end});
   }
 
   /// Returns the positions within `part` where the line goes from one triangle to the next one, in order. Both ends of
   /// `part` are included.
-  std::vector<double> crossings(const Line& line, const Stretch& part) const {
+  std::vector<double> crossings(const Line& line, const LineInterval& part) const {
     std::vector<double> out{part.begin, part.end};
     const auto add = [&](double place, double slope) {
       if (slope == 0.0) return;
@@ -164,7 +164,7 @@ class HeightMap final : public Shape {
   /// The depth of the line below the surface is linear between two crossings.
   template <class Visit>
   void visit(const Line& line, const Visit& visit) const {
-    const std::optional<Stretch> part = clipped(line);
+    const std::optional<LineInterval> part = clipped(line);
     if (!part) return;
     struct Place {
       double at, depth;
@@ -174,7 +174,7 @@ class HeightMap final : public Shape {
       return height(point.x(), point.y());
     };
     const auto look = [&](double at) { return Place{at, height_at(at) - (line.origin.z() + at * line.direction.z())}; };
-    std::optional<Stretch> open;
+    std::optional<LineInterval> open;
     std::optional<Place> before;
     for (const double at : crossings(line, *part)) {
       const Place now = look(at);
@@ -189,7 +189,7 @@ class HeightMap final : public Shape {
         if (has_object && (was_in || is_in)) {
           const double begin = was_in ? before->at : meets;
           const double end = is_in ? now.at : meets;
-          if (!open) open = Stretch{begin, end};
+          if (!open) open = LineInterval{begin, end};
           open->end = end;
         }
         const bool goes_on = has_object && is_in;
@@ -208,6 +208,6 @@ class HeightMap final : public Shape {
   double highest_ = 0.0, half_length_ = 0.0, half_width_ = 0.0;
 };
 
-PALPATE_PLUGIN(Shape, HeightMap, "height_map", "heights on a grid, from a CSV table, a NumPy array or an image")
+PALPATE_PLUGIN(Shape, HeightMapShape, "height_map", "heights on a grid, from a CSV table, a NumPy array or an image")
 
 }  // namespace palpate::shapes

@@ -173,7 +173,7 @@ void limit(int resource, rlim_t most) {
 void limit_memory([[maybe_unused]] std::size_t bytes, [[maybe_unused]] void (*out_of_memory)()) {
 #ifndef PALPATE_SANITIZED  // A sanitizer reserves terabytes of addresses for its own memory.
   std::size_t pages = 0;
-  std::istringstream(read_bounded("/proc/self/statm", kMostSystemBytes, Origin::user).text) >> pages;
+  std::istringstream(read_bounded("/proc/self/statm", kMostSystemBytes, FileOrigin::user).text) >> pages;
   limit(RLIMIT_AS, pages * static_cast<std::size_t>(sysconf(_SC_PAGESIZE)) + 512'000'000 + 64 * bytes);
   std::set_new_handler(out_of_memory);
 #endif

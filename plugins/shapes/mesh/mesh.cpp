@@ -71,7 +71,7 @@ class Mesh final : public Shape {
 
   /// Parts of a mesh may overlap. A point is therefore inside if the line has entered more surfaces than it has left.
   /// If the triangles are not oriented consistently, entries and exits are taken in turn.
-  std::vector<Stretch> intervals(const Line& line) const override {
+  std::vector<LineInterval> intervals(const Line& line) const override {
     std::call_once(orientation_checked_, [this] { oriented_ = is_oriented(); });
     // The hits of adjacent triangles differ only by rounding. A single step passes over all of them.
     const auto step = static_cast<float>(4e-6 * radius_);
@@ -84,7 +84,7 @@ class Mesh final : public Shape {
       balance += hits.back().enters ? 1 : -1;
       from = ray.ray.tfar + step;
     }
-    std::vector<Stretch> out;
+    std::vector<LineInterval> out;
     int depth = 0;
     for (const Hit& one : hits) {
       const bool was = depth != 0;

@@ -39,15 +39,15 @@ fs::path place_of(const std::string& file) {
 
 /// Throws Error with the file as its place.
 std::string bytes_of(const std::string& file) {
-  Reading reading = read_bounded(place_of(file), kMostMeshBytes, Origin::user);
-  if (reading.kind == Reading::Kind::absent) {
+  FileReading reading = read_bounded(place_of(file), kMostMeshBytes, FileOrigin::user);
+  if (reading.kind == FileReading::Kind::absent) {
     std::string hint;
     if (fs::path(file).is_relative())
       hint = "a relative path starts in the current folder, " + fs::current_path().string();
     throw Error(file, "no such file", hint);
   }
-  if (reading.kind == Reading::Kind::not_regular) throw Error(file, "not a regular file", "name a file");
-  if (reading.kind == Reading::Kind::too_large) throw Error(file, "is larger than 500 MB", "reduce its content");
+  if (reading.kind == FileReading::Kind::not_regular) throw Error(file, "not a regular file", "name a file");
+  if (reading.kind == FileReading::Kind::too_large) throw Error(file, "is larger than 500 MB", "reduce its content");
   if (!reading) throw Error(file, words_of(reading, kMostMeshBytes).reason);
   if (reading.text.empty()) throw Error(file, "is empty", "export it again");
   return std::move(reading.text);

@@ -61,7 +61,7 @@ double Prism::first_intersection(const Line& line) const {
   return wall;
 }
 
-std::vector<Stretch> Prism::intervals(const Line& line) const {
+std::vector<LineInterval> Prism::intervals(const Line& line) const {
   Interval between;
   between.clip(line.origin.z(), line.direction.z(), 0.0, height_);
   const Point direction{line.direction.x(), line.direction.y()};
@@ -72,9 +72,9 @@ std::vector<Stretch> Prism::intervals(const Line& line) const {
   visit_crossings(outline_, origin, direction, visit);
   if (!hole_.empty()) visit_crossings(hole_, origin, direction, visit);
   std::sort(crossings.begin(), crossings.end());
-  std::vector<Stretch> out;
+  std::vector<LineInterval> out;
   for (std::size_t i = 0; i + 1 < crossings.size(); i += 2) {
-    const Stretch stretch{std::max(between.begin, crossings[i]), std::min(between.end, crossings[i + 1])};
+    const LineInterval stretch{std::max(between.begin, crossings[i]), std::min(between.end, crossings[i + 1])};
     if (stretch.begin < stretch.end) out.push_back(stretch);
   }
   return out;

@@ -51,7 +51,7 @@ class Prism : public Shape {
   double top(double s, double t) const final;
   double first_intersection(const Line& line) const final;
   double support(const Eigen::Vector3d& direction) const final;
-  std::vector<Stretch> intervals(const Line& line) const final;
+  std::vector<LineInterval> intervals(const Line& line) const final;
 
  private:
   Outline outline_, hole_;

@@ -157,7 +157,7 @@ class ConnectionAttempt {
       TcpConnection(look_up(place->host, place->port, deadline), deadline);
       return true;
     } catch (const NetworkError& reason) {
-      return reason.why != NetworkError::Why::refused;
+      return reason.why != NetworkError::FailureCause::refused;
     }
   }
 

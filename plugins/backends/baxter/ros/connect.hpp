@@ -27,9 +27,9 @@ std::unique_ptr<Robot> connect(const ConnectionOptions& options);
 
 /// Display of the experiment for a spectator: estimated surface, taps, area, and next target. Arguments are in metres
 /// in the scene's frame; the display uses the robot's frame `base`.
-class View {
+class SpectatorDisplay {
  public:
-  virtual ~View() = default;
+  virtual ~SpectatorDisplay() = default;
 
   /// Shows the target of the arm's motion.
   virtual void target(const Target& place) = 0;
@@ -44,6 +44,6 @@ class View {
 /// Creates a publisher of latched topics in frame `base`. palpate/surface is a PointCloud2 with x, y, z, and intensity
 /// = standard deviation. palpate/taps is a MarkerArray with taps on objects and on the desk, the area, and the next
 /// target. `robot` must come from connect().
-std::unique_ptr<View> make_view(Robot& robot, const ScenePoseOptions& place, const Area& area, double desk);
+std::unique_ptr<SpectatorDisplay> make_view(Robot& robot, const ScenePoseOptions& place, const Area& area, double desk);
 
 }  // namespace palpate::baxter

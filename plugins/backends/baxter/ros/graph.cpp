@@ -27,14 +27,14 @@ namespace {
 
 namespace asio = boost::asio;
 using XmlRpc::XmlRpcValue;
-using Why = NetworkError::Why;
+using FailureCause = NetworkError::FailureCause;
 
 constexpr const char* kCaller = "/palpate";
 /// Largest number of bytes of an answer; the description of a whole network has about 10'000
 constexpr std::size_t kLongest = 4'000'000;
 constexpr std::size_t kDeepest = 64;  ///< largest number of nested elements; the description of a whole network has 17
 
-NetworkError not_ros() { return {Why::nonsense, "the program that answers there is not ROS"}; }
+NetworkError not_ros() { return {FailureCause::nonsense, "the program that answers there is not ROS"}; }
 
 /// Returns the first address of a name. With AI_NUMERICHOST no name server is used.
 Address first_address(const std::string& host, int flags) {
@@ -45,7 +45,7 @@ Address first_address(const std::string& host, int flags) {
   hints.ai_flags = flags;
   addrinfo* list = nullptr;
   const int error = getaddrinfo(host.c_str(), nullptr, &hints, &list);
-  if (error != 0) throw NetworkError(Why::name, gai_strerror(error));
+  if (error != 0) throw NetworkError(FailureCause::name, gai_strerror(error));
   Address out;
   std::memcpy(out.data(), list->ai_addr, std::min<std::size_t>(list->ai_addrlen, out.capacity()));
   freeaddrinfo(list);
@@ -125,7 +125,7 @@ auto parse_answer(const std::string& xml, const Read& read) {
     XmlRpcValue failure;
     return read(static_cast<int>(parts[0]) == 1 ? parts[2] : failure);
   } catch (const XmlRpc::XmlRpcException& exception) {
-    throw NetworkError(Why::nonsense, "its answer is invalid: " + exception.getMessage());
+    throw NetworkError(FailureCause::nonsense, "its answer is invalid: " + exception.getMessage());
   }
 }
 
@@ -172,7 +172,7 @@ Header exchange_headers(TcpConnection& wire, const Header& ours, Deadline deadli
     if (equals != std::string::npos) theirs[field.substr(0, equals)] = field.substr(equals + 1);
     at += 4 + length;
   }
-  if (theirs.count("error") != 0) throw NetworkError(Why::nonsense, "it refuses: " + theirs["error"]);
+  if (theirs.count("error") != 0) throw NetworkError(FailureCause::nonsense, "it refuses: " + theirs["error"]);
   return theirs;
 }
 
@@ -201,7 +201,7 @@ Address look_up(const std::string& host, int port, Deadline deadline) {
     std::future<Address> found = task->get_future();
     thread_without_signals([task] { (*task)(); }).detach();
     if (found.wait_until(deadline) != std::future_status::ready) {
-      throw NetworkError(Why::name, "looking up its host takes too long");
+      throw NetworkError(FailureCause::name, "looking up its host takes too long");
     }
     out = found.get();
   }
@@ -224,17 +224,17 @@ std::size_t TcpConnection::finish(Deadline deadline, const Begin& begin) {
   if (!io_.stopped()) {
     socket_.close(error);
     io_.run();
-    throw NetworkError(Why::silent, "no answer in time");
+    throw NetworkError(FailureCause::silent, "no answer in time");
   }
   if (error == asio::error::eof) return 0;
-  if (error) throw NetworkError(Why::refused, error.message());
+  if (error) throw NetworkError(FailureCause::refused, error.message());
   return bytes;
 }
 
 TcpConnection::TcpConnection(const Address& address, Deadline deadline) {
   // The socket is created here with SOCK_CLOEXEC, so that child processes do not inherit it. Asio would omit the flag.
   const int opened = ::socket(address.data()->sa_family, SOCK_STREAM | SOCK_CLOEXEC, 0);
-  if (opened < 0) throw NetworkError(Why::refused, std::strerror(errno));
+  if (opened < 0) throw NetworkError(FailureCause::refused, std::strerror(errno));
   socket_.assign(address.protocol(), opened);
   finish(deadline, [&](const auto& done) { socket_.async_connect(address, done); });
 }
@@ -252,7 +252,7 @@ std::string TcpConnection::receive_some(std::size_t most, Deadline deadline) {
 std::string TcpConnection::receive(std::size_t bytes, Deadline deadline) {
   std::string all(bytes, '\0');
   if (finish(deadline, [&](const auto& done) { asio::async_read(socket_, asio::buffer(all), done); }) < bytes) {
-    throw NetworkError(Why::nonsense, "the connection was ended");
+    throw NetworkError(FailureCause::nonsense, "the connection was ended");
   }
   return all;
 }
@@ -303,7 +303,7 @@ MessageType query_publisher(const HostPort& node, const std::string& topic, Dead
                                       {XmlRpcValue(kCaller), XmlRpcValue(topic), protocols}, deadline);
   return parse_answer(xml, [&](XmlRpcValue& way) {
     if (way.getType() != XmlRpcValue::TypeArray || way.size() < 3) {
-      throw NetworkError(Why::nonsense, "the node denies that it publishes the topic");
+      throw NetworkError(FailureCause::nonsense, "the node denies that it publishes the topic");
     }
     TcpConnection wire(look_up(static_cast<std::string&>(way[1]), static_cast<int>(way[2]), deadline), deadline);
     Header answer = exchange_headers(
@@ -320,7 +320,8 @@ std::string call_service(const Address& address, const std::string& name, const 
   wire.send(request, deadline);
   const bool served = wire.receive(1, deadline)[0] != 0;
   std::string answer = receive_block(wire, deadline);
-  if (!served) throw NetworkError(Why::nonsense, "the service failed" + (answer.empty() ? answer : ": " + answer));
+  if (!served)
+    throw NetworkError(FailureCause::nonsense, "the service failed" + (answer.empty() ? answer : ": " + answer));
   return answer;
 }
 

@@ -29,14 +29,14 @@ Deadline within(std::chrono::milliseconds longest, Deadline deadline);
 
 /// Network error of a query. Callers inside ros/ convert it to an Error for the user.
 struct NetworkError : std::runtime_error {
-  enum class Why {
+  enum class FailureCause {
     name,      ///< the host name has no address
     refused,   ///< the host or the network rejected the connection
     silent,    ///< no answer before the deadline
     nonsense,  ///< the answer violates the protocol, or is an error
   };
-  NetworkError(Why reason, const std::string& words) : std::runtime_error(words), why(reason) {}
-  Why why;
+  NetworkError(FailureCause reason, const std::string& words) : std::runtime_error(words), why(reason) {}
+  FailureCause why;
 };
 
 /// Starts a thread with all signals blocked, so that signals reach the threads of the program.

@@ -138,11 +138,11 @@ Network find_network(Deadline deadline) {
 Error unreachable(const std::string& where, const std::string& who, const HostPort& place, const NetworkError& reason,
                   const std::string& remedy) {
   switch (reason.why) {
-    case NetworkError::Why::name:
+    case NetworkError::FailureCause::name:
       return robot_error(
           where, fmt::format("{} is on the host {}, which does not resolve here ({})", who, place.host, reason.what()),
           "check the cable to the robot; names in .local need mDNS (libnss-mdns) or a line in /etc/hosts");
-    case NetworkError::Why::silent:
+    case NetworkError::FailureCause::silent:
       return robot_error(where, fmt::format("{} at {}:{} does not answer in time", who, place.host, place.port),
                          "check that the robot is on and that no firewall blocks the connection");
     default:

@@ -225,9 +225,9 @@ class RosRobot final : public RosConnection {
   std::string answer(const std::string& request, Deadline deadline) {
     const char* md5 = ros::service_traits::MD5Sum<msgs::SolvePositionIK>::value();
     const auto uri = master_.query("lookupService", kSolverService, deadline);
-    if (!uri) throw NetworkError(NetworkError::Why::refused, "no node offers it");
+    if (!uri) throw NetworkError(NetworkError::FailureCause::refused, "no node offers it");
     const auto place = parse_uri(*uri, "rosrpc");
-    if (!place) throw NetworkError(NetworkError::Why::nonsense, "the master has it at " + *uri);
+    if (!place) throw NetworkError(NetworkError::FailureCause::nonsense, "the master has it at " + *uri);
     return call_service(look_up(place->host, place->port, deadline), kSolverService, md5, request, deadline);
   }
 
@@ -238,7 +238,7 @@ class RosRobot final : public RosConnection {
 
     /// Returns the arrival of the next reading of a stream.
     template <class Message, class Reading>
-    Arrival next(const Message& message, const std::optional<Reading>& latest) const {
+    MessageArrival next(const Message& message, const std::optional<Reading>& latest) const {
       return {received, message.header.stamp.toSec(), (latest ? latest->count : 0) + 1};
     }
   };
@@ -299,7 +299,7 @@ class RosRobot final : public RosConnection {
                                          std::pair(kCommandTimeoutTopic, &Snapshot::command_timeout)}) {
       subscribe<std_msgs::Float64>(topic,
                                    [kept = setting](const auto& message, const MessageInfo& heard, Snapshot& latest) {
-                                     latest.*kept = Setting{message.data, heard.sender};
+                                     latest.*kept = ReceivedSetting{message.data, heard.sender};
                                    });
     }
     if (ros::Time::isSimTime()) listen_to_clock();

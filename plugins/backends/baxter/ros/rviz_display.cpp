@@ -23,16 +23,16 @@ constexpr double kArrowLength = 0.08;  ///< m, from the arrow's start to the des
 constexpr double kArrowWidth = 0.006;
 constexpr const char* kFrame = "base";
 
-class RosView final : public View {
+class RvizDisplay final : public SpectatorDisplay {
  public:
-  RosView(std::shared_ptr<Bag> bag, const ScenePoseOptions& place, const Area& area, double desk)
+  RvizDisplay(std::shared_ptr<Bag> bag, const ScenePoseOptions& place, const Area& area, double desk)
       : frame_(place.frame()), area_(area), desk_(desk), bag_(std::move(bag)) {
     surface_publisher_ = handle_.advertise<sensor_msgs::PointCloud2>("palpate/surface", 1, true);
     taps_publisher_ = handle_.advertise<MarkerArray>("palpate/taps", 1, true);
     show_taps();
   }
 
-  ~RosView() override {
+  ~RvizDisplay() override {
     forget_silent_master();
     run_on_connection_thread([this] {
       surface_publisher_.shutdown();
@@ -140,8 +140,9 @@ class RosView final : public View {
 
 }  // namespace
 
-std::unique_ptr<View> make_view(Robot& robot, const ScenePoseOptions& place, const Area& area, double desk) {
-  return std::make_unique<RosView>(dynamic_cast<RosConnection&>(robot).bag(), place, area, desk);
+std::unique_ptr<SpectatorDisplay> make_view(Robot& robot, const ScenePoseOptions& place, const Area& area,
+                                            double desk) {
+  return std::make_unique<RvizDisplay>(dynamic_cast<RosConnection&>(robot).bag(), place, area, desk);
 }
 
 }  // namespace palpate::baxter
