@@ -1,13 +1,16 @@
 # SPDX-License-Identifier: MIT
 # palpate_sweep: many runs from one config, and the launchers that run them.
 # The table of launchers, in the order of `--launcher`; the first one is the default. launch/NAME_launcher.cpp has NAME.
+# Jobs of a launcher that is marked `cluster` continue without the process that launched them.
 set(launchers
   local
-  slurm)
-list(TRANSFORM launchers PREPEND launch/ OUTPUT_VARIABLE launcher_files)
-list(TRANSFORM launcher_files APPEND _launcher.cpp)
-list(TRANSFORM launchers REPLACE "(.+)" "PALPATE_LAUNCHER(\\1)\n" OUTPUT_VARIABLE launcher_table)
-list(JOIN launcher_table "" launcher_table)
+  slurm:cluster)
+foreach(launcher ${launchers})
+  string(REGEX REPLACE ":cluster$" "" name ${launcher})
+  list(APPEND launcher_files launch/${name}_launcher.cpp)
+  string(COMPARE NOTEQUAL ${launcher} ${name} is_cluster)
+  string(APPEND launcher_table "PALPATE_LAUNCHER(${name}, ${is_cluster})\n")
+endforeach()
 file(CONFIGURE OUTPUT launch/launcher_table.inc CONTENT "${launcher_table}")
 
 add_library(palpate_sweep STATIC

@@ -42,7 +42,7 @@ Argument add_launch(const Command& command, LaunchArguments& launch) {
 }
 
 void check_launch(const LaunchArguments& launch) {
-  const bool on_cluster = launch.launcher != kLocal;
+  const bool on_cluster = is_cluster(launch.launcher);
   const std::pair<const char*, bool> given[]{
       {"--partition", !launch.cluster.partition.empty()},    {"--time", !launch.cluster.time.empty()},
       {"--account", !launch.cluster.account.empty()},        {"--sbatch", !launch.cluster.words.empty()},

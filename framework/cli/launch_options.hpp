@@ -8,7 +8,7 @@
 namespace palpate::cli {
 
 struct LaunchArguments {
-  std::string launcher = kLocal;
+  std::string launcher = kLaunchers.front();
   std::optional<int> workers;  ///< number of parallel jobs; on a cluster: number per task
   int attempts = 3;            ///< maximum number of starts per job
   bool quiet = false;

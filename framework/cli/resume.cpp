@@ -18,7 +18,7 @@ int resume(CommandEnvironment& program, const ResumeArguments& arguments) {
   if (!arguments.jobs.empty()) {
     throw Error("command line", "--jobs: " + arguments.directory + " is not a sweep", "leave it out");
   }
-  if (arguments.launch.launcher != kLocal) {
+  if (arguments.launch.launcher != kLaunchers.front()) {
     throw Error("command line",
                 fmt::format("--launcher {}: {} is not a sweep", arguments.launch.launcher, arguments.directory),
                 "leave it out");

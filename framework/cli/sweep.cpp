@@ -115,7 +115,7 @@ int finish_whole(const SweepExecution& execution, const JobStates& end, bool int
   return open ? kFailed : sweep_status(config->expectations, all_hold, !end.failures.empty());
 }
 
-bool is_on_cluster(const SweepExecution& execution) { return execution.launch.launcher != kLocal; }
+bool is_on_cluster(const SweepExecution& execution) { return is_cluster(execution.launch.launcher); }
 
 LaunchOptions launch_options(const SweepExecution& execution) {
   const LaunchArguments& launch = execution.launch;

@@ -16,6 +16,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace palpate {
@@ -93,15 +94,21 @@ struct LauncherType {
   void (*check_installed)() = nullptr;
 };
 
-/// The launcher of this machine. All others are clusters, where jobs continue without this process.
-inline constexpr const char* kLocal = "local";
-
 /// The names in the table of launchers (palpate_sweep.cmake). A program can use them without linking the launchers.
 inline constexpr std::array kLaunchers{
-#define PALPATE_LAUNCHER(name) #name,
+#define PALPATE_LAUNCHER(name, is_cluster) #name,
 #include "launch/launcher_table.inc"
 #undef PALPATE_LAUNCHER
 };
+
+/// Returns whether a launcher is a cluster, where jobs continue without this process.
+constexpr bool is_cluster(std::string_view launcher) {
+#define PALPATE_LAUNCHER(name, is_cluster) \
+  if (launcher == #name) return is_cluster;
+#include "launch/launcher_table.inc"
+#undef PALPATE_LAUNCHER
+  return false;
+}
 
 /// Returns the entry with this name, one of kLaunchers.
 const LauncherType& launcher_type(const std::string& name);

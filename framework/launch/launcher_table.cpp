@@ -7,13 +7,13 @@
 
 namespace palpate {
 
-#define PALPATE_LAUNCHER(name) extern const LauncherType name##_launcher;
+#define PALPATE_LAUNCHER(name, is_cluster) extern const LauncherType name##_launcher;
 #include "launch/launcher_table.inc"
 #undef PALPATE_LAUNCHER
 
 const LauncherType& launcher_type(const std::string& name) {
   static constexpr std::array kTypes{
-#define PALPATE_LAUNCHER(name) &name##_launcher,
+#define PALPATE_LAUNCHER(name, is_cluster) &name##_launcher,
 #include "launch/launcher_table.inc"
 #undef PALPATE_LAUNCHER
   };

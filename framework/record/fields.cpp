@@ -469,10 +469,11 @@ FieldList<Summary> make_summary_list() {
            [](const Summary& s) { return s.config.options.seed; });
   list.add("status", "final state of the run: `done` or `failed`",
            [](const Summary& s) { return s.failure.empty() ? "done" : "failed"; });
-  list.add("stop_reason",
-           "reason for the end: `tap budget`, `robot_time`, `max_standard_deviation`, `expected_rmse`, `no candidate "
-           "is left`, or the error (`backend/baxter: ...` if the backend could not continue)",
-           [](const Summary& s) { return s.failure.empty() ? s.stop_reason : s.failure; });
+  list.add(
+      "stop_reason",
+      "reason for the end: `tap budget`, `no candidate is left`, the name of a stop rule such as `robot_time`, or the "
+      "error (`backend/baxter: ...` if the backend could not continue)",
+      [](const Summary& s) { return s.failure.empty() ? s.stop_reason : s.failure; });
   list.add("taps", "number of all taps: the sum of the next three counts, or four from any side", &Summary::taps)
       .less()
       .headline();
