@@ -61,7 +61,7 @@ class Engine {
   /// kernel. The result is empty for an engine without approximation.
   virtual VectorView covariance_errors() const { return Eigen::VectorXd(); }
 
-  const Maps& maps() const { return maps_; }
+  const MapTiles& maps() const { return maps_; }
 
  protected:
   Engine(const char* name, const std::shared_ptr<Workers>& workers, const Kernel& kernel,
@@ -75,7 +75,7 @@ class Engine {
   std::shared_ptr<Workers> workers_;
   const Kernel& kernel_;
   const CandidateGrid& candidates_;
-  Maps maps_;
+  MapTiles maps_;
 };
 
 /// Create an engine. `kernel` and `candidates` must outlive the engine, and the hyperparameters of the kernel must not

@@ -38,10 +38,10 @@ void Tiling::tile(int columns) {
   strip_size_ = static_cast<std::size_t>(padded_) * loops::kStripRows;
 }
 
-Maps::Maps(const Tiling& tiling, const std::shared_ptr<Workers>& workers)
+MapTiles::MapTiles(const Tiling& tiling, const std::shared_ptr<Workers>& workers)
     : tiling_(tiling), workers_(workers), variance_(tiling.size()) {}
 
-void Maps::restart(int means, const VectorView& prior) {
+void MapTiles::restart(int means, const VectorView& prior) {
   means_ = means;
   for (int k = 0; k < means; ++k) {
     loops::AlignedArray& map = mean_[static_cast<std::size_t>(k)];
@@ -64,7 +64,7 @@ void Maps::restart(int means, const VectorView& prior) {
   }
 }
 
-loops::Update Maps::update(int strip, const double* coefficients) {
+loops::Update MapTiles::update(int strip, const double* coefficients) {
   const std::size_t first = static_cast<std::size_t>(strip) * tiling_.strip_size();
   loops::Update out{};
   out.means = means_;
@@ -76,7 +76,7 @@ loops::Update Maps::update(int strip, const double* coefficients) {
   return out;
 }
 
-void Maps::read(const loops::AlignedArray& map, const loops::MapTransform& reading, double* out) const {
+void MapTiles::read(const loops::AlignedArray& map, const loops::MapTransform& reading, double* out) const {
   workers_->for_each(tiling_.strips(), [&](int strip, int) {
     tiling_.for_blocks(strip, [&](const MapBlock& block) {
       loops::read({map.data() + block.cell, block.width, out + block.candidate, block.columns, block.rows, block.count,
@@ -88,12 +88,12 @@ void Maps::read(const loops::AlignedArray& map, const loops::MapTransform& readi
 
 // `out` is a view (Eigen::Ref), so it is passed by value, although the function writes to its data.
 // NOLINTNEXTLINE(performance-unnecessary-value-param)
-void Maps::read_mean(int k, const loops::MapTransform& reading, VectorOut out) const {
+void MapTiles::read_mean(int k, const loops::MapTransform& reading, VectorOut out) const {
   read(mean_[static_cast<std::size_t>(k)], reading, out.data());
 }
 
 // NOLINTNEXTLINE(performance-unnecessary-value-param)
-void Maps::read_variance(const loops::MapTransform& reading, VectorOut out) const {
+void MapTiles::read_variance(const loops::MapTransform& reading, VectorOut out) const {
   read(variance_, reading, out.data());
 }
 

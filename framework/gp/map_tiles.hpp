@@ -87,9 +87,9 @@ class Tiling {
 };
 
 /// The maps of the means and of the variance, in standardised units (signal 1).
-class Maps {
+class MapTiles {
  public:
-  Maps(const Tiling& tiling, const std::shared_ptr<Workers>& workers);
+  MapTiles(const Tiling& tiling, const std::shared_ptr<Workers>& workers);
 
   /// Sets `means` maps of means to 0, and the variance to `prior`: one value per candidate, or a single value if all
   /// are equal.

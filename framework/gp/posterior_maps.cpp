@@ -94,7 +94,7 @@ void PosteriorMaps::absorb(const FactoredTaps& taps, int row) {
 }
 
 void PosteriorMaps::read_mean(int output, double signal, double mean, Eigen::VectorXd& out) const {
-  const Maps& maps = choice_.engine->maps();
+  const MapTiles& maps = choice_.engine->maps();
   out.resize(candidates_.size());
   if (!unknown_) return maps.read_mean(output, {-kUnbounded, kUnbounded, signal, mean}, out);
   maps.read_mean(output, kUnchanged, out);
@@ -104,7 +104,7 @@ void PosteriorMaps::read_mean(int output, double signal, double mean, Eigen::Vec
 }
 
 void PosteriorMaps::read_raw_variance(Eigen::VectorXd& out) const {
-  const Maps& maps = choice_.engine->maps();
+  const MapTiles& maps = choice_.engine->maps();
   out.resize(candidates_.size());
   maps.read_variance(kUnchanged, out);
   if (!unknown_) return;

@@ -46,8 +46,8 @@ struct EngineReport {
   double error_bound;
 };
 
-/// Maps over the candidates, which are updated once for each row of a factor, unless the maps restart. An unknown mean
-/// allows only one output, and needs one more map: V^T L^-1 1, the part of the constant that the taps explain. The
+/// MapTiles over the candidates, which are updated once for each row of a factor, unless the maps restart. An unknown
+/// mean allows only one output, and needs one more map: V^T L^-1 1, the part of the constant that the taps explain. The
 /// functions that read maps resize `out` to the number of candidates.
 class PosteriorMaps {
  public:
