@@ -8,6 +8,7 @@
 #include "record/json.hpp"
 #include "record/run_directory.hpp"
 #include "record/run_replay.hpp"
+#include "record/surface_files.hpp"
 #include "sweep/pooled_sweep.hpp"
 #include "sweep/sweep.hpp"
 #include "threads.hpp"
