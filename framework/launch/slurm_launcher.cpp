@@ -41,7 +41,7 @@ struct ReservedOption {
   const char* hint;
 };
 constexpr const char* kOwnOption = "use palpate's own option of this name";
-constexpr std::array<ReservedOption, 10> kOwnWords{
+constexpr std::array<ReservedOption, 10> kReservedOptions{
     {{"--partition", "-p", kOwnOption},
      {"--time", "-t", kOwnOption},
      {"--account", "-A", kOwnOption},
@@ -208,7 +208,7 @@ void check_sbatch_words(const std::vector<std::string>& words) {
     }
     const bool is_long = word.compare(0, 2, "--") == 0;
     const std::string name = is_long ? word.substr(0, word.find('=')) : word.substr(0, 2);
-    for (const ReservedOption& own : kOwnWords) {
+    for (const ReservedOption& own : kReservedOptions) {
       if (name != own.name && name != own.letter) continue;
       throw Error("command line", fmt::format("--sbatch: {} cannot be set with --sbatch", name), own.hint);
     }

@@ -129,7 +129,7 @@ struct NamedRecords {
 };
 
 /// Returns the records that `words` name. Throws Error for an unknown name.
-NamedRecords find_meant(const std::string& words, RecordKind wanted, const fs::path& runs) {
+NamedRecords find_named(const std::string& words, RecordKind wanted, const fs::path& runs) {
   NamedRecords out;
   out.latest = !is_there(words) && boost::ends_with(words, kLatest);
   out.base = out.latest ? words.substr(0, words.size() - std::string_view(kLatest).size()) : words;
@@ -210,7 +210,7 @@ Row settings_of(const Tree& config) {
 Row read_settings(const fs::path& directory) { return settings_of(read_run_config(directory)); }
 
 fs::path find_record(const std::string& words, RecordKind wanted, const fs::path& runs) {
-  return only_one(words, find_meant(words, wanted, runs));
+  return only_one(words, find_named(words, wanted, runs));
 }
 
 std::vector<fs::path> find_records(const std::vector<std::string>& words, const fs::path& runs) {
@@ -219,7 +219,7 @@ std::vector<fs::path> find_records(const std::vector<std::string>& words, const 
     // A pattern such as runs/NAME/* also matches tables and figures next to the records.
     std::error_code none;
     if (words.size() > 1 && one.find('/') != std::string::npos && fs::is_regular_file(one, none)) continue;
-    const NamedRecords meant = find_meant(one, RecordKind::sweep, runs);
+    const NamedRecords meant = find_named(one, RecordKind::sweep, runs);
     const bool all = !meant.latest && std::none_of(meant.records.begin(), meant.records.end(), is_sweep);
     if (all) out.insert(out.end(), meant.records.begin(), meant.records.end());
     if (!all || meant.records.empty()) out.push_back(only_one(one, meant));

@@ -23,7 +23,7 @@ namespace {
 constexpr std::array<std::string_view, 9> kKinds{"manifest", "attempt", "setup", "intent", "tap",
                                                  "timing",   "objects", "note",  "end"};
 /// Names of the values of Ending::EndKind.
-constexpr std::array<const char*, 3> kHows{"done", "failed", "interrupted"};
+constexpr std::array<const char*, 3> kEndKinds{"done", "failed", "interrupted"};
 
 constexpr const char* kNoEnding =
     "has no 'end' with done, failed or interrupted, or names a file that is not in its folder";
@@ -40,9 +40,9 @@ std::optional<std::int64_t> count_in(const Row& row, std::string_view name) {
 }
 
 std::optional<Ending::EndKind> how_of(const Row& end) {
-  const auto found = std::find(kHows.begin(), kHows.end(), end.text("end"));
-  if (found == kHows.end()) return std::nullopt;
-  return static_cast<Ending::EndKind>(found - kHows.begin());
+  const auto found = std::find(kEndKinds.begin(), kEndKinds.end(), end.text("end"));
+  if (found == kEndKinds.end()) return std::nullopt;
+  return static_cast<Ending::EndKind>(found - kEndKinds.begin());
 }
 
 /// Whether a name is that of a file in the record's own folder, so that a manipulated record cannot name other files.
@@ -125,7 +125,7 @@ void add_line(RecordLine line, RunRecord& out) {
 
 }  // namespace
 
-const char* ending_name(Ending::EndKind how) { return kHows[static_cast<std::size_t>(how)]; }
+const char* ending_name(Ending::EndKind how) { return kEndKinds[static_cast<std::size_t>(how)]; }
 
 TapTimes times_of(const Row& row) {
   TapTimes out;

@@ -88,8 +88,8 @@ std::vector<FreePathPoint*> find_close(const ResidualKernel& kernel, const Resid
 
 /// Fit of the residual GP to contacts and to the free points that hold the surface back. Let A = L * L' be the
 /// covariance of the contacts, noise included, and V = L^-1 * C, where C is the covariance between the contacts and the
-/// free points. Then S of Nonnegative is the covariance of the free points given the contacts, with their noise. d is
-/// the depth of the free points inside the surface given the contacts.
+/// free points. Then S of NonnegativeSolver is the covariance of the free points given the contacts, with their noise.
+/// d is the depth of the free points inside the surface given the contacts.
 class ConstrainedFit {
  public:
   ConstrainedFit(const ResidualKernel& kernel, const ResidualData& contacts)

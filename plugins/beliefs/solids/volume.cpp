@@ -59,9 +59,9 @@ Vector3d normal(const Primitive& primitive, const Vector3d& at) {
 }
 
 /// Finds the nearest primitive of an assembly.
-class NearestPrimitive {
+class PrimitiveSearch {
  public:
-  explicit NearestPrimitive(const Assembly& solids) : solids_(solids) {
+  explicit PrimitiveSearch(const Assembly& solids) : solids_(solids) {
     for (const Assembly::Part& part : solids.parts) {
       shares_.push_back(certain_share(part.primitive));
       balls_.push_back(part.primitive.form == Primitive::Form::ellipsoid ? part.primitive.half.maxCoeff()
@@ -126,7 +126,7 @@ Cubes::Held Cubes::of(const Assembly& solids, const ResidualGp& residual_gp) con
   Held out(static_cast<std::size_t>(across_) * static_cast<std::size_t>(across_) * static_cast<std::size_t>(up_));
   const double band = residual_gp.reach();
   ResidualMeanCache nearby(residual_gp, side_);
-  const NearestPrimitive nearest(solids);
+  const PrimitiveSearch nearest(solids);
   // Subdivides blocks of cubes until the surface is farther from their centre than their corners are.
   const auto fill = [&](const auto& self, int x, int y, int z, int size) -> void {
     if (x >= across_ || y >= across_ || z >= up_) return;

@@ -64,7 +64,7 @@ class SweepData {
     return jobs.map((job) => this.number(column, job)).filter((value) => value !== null);
   }
 
-  /// Returns the number of a job's unit of statistics (JobUnits in analysis/groups.hpp).
+  /// Returns the number of a job's unit of statistics (StatisticalUnits in analysis/groups.hpp).
   unit(job) {
     return this.units_of_jobs[job.place];
   }
