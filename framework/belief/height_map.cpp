@@ -4,7 +4,7 @@
 #include "belief/expected_rmse.hpp"
 #include "belief/object_errors.hpp"
 #include "gp/candidate_grid.hpp"
-#include "regular/count_factors.hpp"
+#include "regular/factor_diagnostics.hpp"
 
 #include <palpate/error.hpp>
 #include <palpate/grid.hpp>

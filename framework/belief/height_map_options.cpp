@@ -32,7 +32,7 @@ void OffsetOptions::list(Fields& fields) {
                          .from("2 mm: pose and moment of detection of an arm like Baxter"));
 }
 
-void HeightOptions::list(Fields& fields) {
+void HeightGpOptions::list(Fields& fields) {
   fields.real(signal, Field("signal", "prior standard deviation of the height")
                           .in(Unit::metre)
                           .at_least(kLeastSignal)
@@ -53,7 +53,7 @@ void HeightOptions::list(Fields& fields) {
   list_plugins(fields);
 }
 
-void LabelOptions::list(Fields& fields) {
+void LabelGpOptions::list(Fields& fields) {
   fields.real(signal,
               Field("signal", "prior standard deviation of the label").at_least(kLeastSignal).at_most(kMostSignal));
   fields.real(noise, Field("noise", "standard deviation of the noise of one label").at_least(0).at_most(kMostSignal));

@@ -30,13 +30,13 @@ struct OffsetOptions : Options {
   void list(Fields& fields) override;
 };
 
-struct HeightOptions : GpOptions {
+struct HeightGpOptions : GpOptions {
   std::optional<OffsetOptions> offset;        ///< absent: heights are used as measured
   std::optional<double> outlier_probability;  ///< absent: no contact is an outlier
   void list(Fields& fields) override;
 };
 
-struct LabelOptions : GpOptions {
+struct LabelGpOptions : GpOptions {
   enum class HyperparameterSource { own, shared };
   double prior_mean = 0.0;
   bool clip = false;
@@ -56,8 +56,8 @@ struct EngineOptions : Options {
 
 struct HeightMapOptions : Options {
   enum class Surface { single, two_part };
-  HeightOptions height;
-  LabelOptions label;
+  HeightGpOptions height;
+  LabelGpOptions label;
   PluginChoice footprint{"footprint", "gp_regression", nullptr};
   Surface surface = Surface::single;
   EngineOptions engine;

@@ -32,7 +32,7 @@ bool same(const PluginChoice& a, const PluginChoice& b) {
   return a.type == b.type && a.options->canonical() == b.options->canonical();
 }
 
-GpDescription height_gp_of(const HeightOptions& height, const EngineSettings& engine, const Context& context,
+GpDescription height_gp_of(const HeightGpOptions& height, const EngineSettings& engine, const Context& context,
                            bool only_objects) {
   GpSettings settings{height.signal, height.noise, 0.0};
   if (only_objects) settings.mean_ratio = height.outlier_probability ? kLevelWithOutliers : kFreeLevel;
@@ -53,10 +53,10 @@ HeightModels::HeightModels(const HeightMapOptions& options, const CandidateGrid&
                options.surface == HeightMapOptions::Surface::single, context.scene.desk()),
       label_map_(options.label.clip) {
   const EngineSettings& engine = heights_.gp().engine();
-  const HeightOptions& height = options.height;
-  const LabelOptions& label = options.label;
+  const HeightGpOptions& height = options.height;
+  const LabelGpOptions& label = options.label;
   GpSettings settings{label.signal, label.noise, label.prior_mean};
-  if (label.hyperparameters != LabelOptions::HyperparameterSource::shared) {
+  if (label.hyperparameters != LabelGpOptions::HyperparameterSource::shared) {
     const PluginChoice kernel = label.kernel.value_or(context.run.kernel);
     const PluginChoice fitting = label.fitting.value_or(context.run.fitting);
     labels_.emplace(GpDescription{"fitting/weight", kernel, fitting, {settings}, engine, true}, candidates, context);

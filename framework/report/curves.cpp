@@ -83,7 +83,7 @@ std::vector<Curve> times(const RecordedRun& recording, const History& history) {
 /// Removes values that the axis cannot show, and curves that have no value. A logarithmic axis becomes linear if the
 /// largest value is less than 20 times the least.
 void fit_axis(CurvePanel& panel) {
-  if (panel.axis == CurveAxis::logarithmic) {
+  if (panel.axis == ValueAxisScale::logarithmic) {
     double least = std::numeric_limits<double>::infinity();
     double most = 0.0;
     for (Curve& curve : panel.curves) {
@@ -94,7 +94,7 @@ void fit_axis(CurvePanel& panel) {
       }
     }
     constexpr double kMostLinear = 20.0;
-    if (most <= kMostLinear * least) panel.axis = CurveAxis::from_zero;
+    if (most <= kMostLinear * least) panel.axis = ValueAxisScale::from_zero;
   }
   const auto empty = [](const Curve& curve) {
     return std::none_of(curve.values.begin(), curve.values.end(), [](const auto& value) { return value.has_value(); });
@@ -104,14 +104,14 @@ void fit_axis(CurvePanel& panel) {
 
 /// Returns the constant value of a curve; nullopt if the curve visibly changes. On a free axis, any change is visible.
 /// On other axes, changes of at most a thousandth of the largest absolute value are invisible.
-std::optional<double> constant_value(const Curve& curve, CurveAxis axis) {
+std::optional<double> constant_value(const Curve& curve, ValueAxisScale axis) {
   double least = std::numeric_limits<double>::infinity();
   double most = -least;
   for (const std::optional<double>& value : curve.values) {
     least = std::min(least, value.value_or(least));
     most = std::max(most, value.value_or(most));
   }
-  const double visible = axis == CurveAxis::free ? 0.0 : 1e-3 * std::max(std::abs(least), std::abs(most));
+  const double visible = axis == ValueAxisScale::free ? 0.0 : 1e-3 * std::max(std::abs(least), std::abs(most));
   return most - least <= visible ? std::optional(most) : std::nullopt;
 }
 
@@ -144,13 +144,13 @@ std::vector<CurvePanel> error_panels(bool any_side, const History& history) {
     if (is_length) {
       lengths.push_back(std::move(curve));
     } else {
-      out.push_back({error.label, "", CurveAxis::share, {std::move(curve)}});
+      out.push_back({error.label, "", ValueAxisScale::share, {std::move(curve)}});
     }
   }
   lengths.push_back(curve_of(history, find_summary_field(kExpectedError)->label, [&](const RunAtTap& moment) {
     return in_millimetres(Row{moment.result.state.fields}.number(kExpectedError));
   }));
-  out.front() = {surface_error_title(any_side), "mm", CurveAxis::from_zero, std::move(lengths)};
+  out.front() = {surface_error_title(any_side), "mm", ValueAxisScale::from_zero, std::move(lengths)};
   return out;
 }
 
@@ -176,29 +176,29 @@ Curves curves_of(const RecordedRun& recording, const History& history) {
   const ExperimentOptions& options = recording.config.options;
   const bool any_side = recording.is_any_side();
   std::vector<CurvePanel> panels = error_panels(recording.is_any_side(), history);
-  const auto add = [&](std::string title, const char* unit, CurveAxis axis, std::vector<Curve> curves) {
+  const auto add = [&](std::string title, const char* unit, ValueAxisScale axis, std::vector<Curve> curves) {
     panels.push_back({std::move(title), unit, axis, std::move(curves)});
   };
   const auto one = [&](const auto& get) { return std::vector<Curve>{curve_of(history, "", get)}; };
   add(any_side ? "Largest standard deviation of the surface" : "Largest standard deviation of a height", "cm",
-      CurveAxis::from_zero, one([&](const RunAtTap& moment) {
+      ValueAxisScale::from_zero, one([&](const RunAtTap& moment) {
         const bool drawn = !any_side || moment.largest_deviation > 0.0;
         return drawn ? std::optional(100.0 * moment.largest_deviation) : std::nullopt;
       }));
-  add("Share of the taps on the object", "", CurveAxis::share, one([](const RunAtTap& moment) {
+  add("Share of the taps on the object", "", ValueAxisScale::share, one([](const RunAtTap& moment) {
         const RunResult& result = moment.result;
         return moment.taps > 0 ? std::optional(static_cast<double>(result.object_taps) / moment.taps) : std::nullopt;
       }));
-  add("Log marginal likelihood", "nat", CurveAxis::free, named_curves(history, likelihoods_of));
+  add("Log marginal likelihood", "nat", ValueAxisScale::free, named_curves(history, likelihoods_of));
   for (const NamedGp& state : kStates) {
-    add(fmt::format("Hyperparameters of the {}", state.name), "SI units", CurveAxis::logarithmic,
+    add(fmt::format("Hyperparameters of the {}", state.name), "SI units", ValueAxisScale::logarithmic,
         named_curves(history, [&](const Row& row) { return parameters_of(row, state.field); }));
   }
-  add(fmt::format("Numbers of footprint/{}", belief_option(options, "footprint.type")), "", CurveAxis::free,
+  add(fmt::format("Numbers of footprint/{}", belief_option(options, "footprint.type")), "", ValueAxisScale::free,
       named_curves(history, footprint_numbers));
-  add("Time of a tap, by phase", "ms", CurveAxis::logarithmic, times(recording, history));
+  add("Time of a tap, by phase", "ms", ValueAxisScale::logarithmic, times(recording, history));
   if (history.moments.back().result.robot_seconds > 0.0)
-    add("Robot time so far", "s", CurveAxis::from_zero,
+    add("Robot time so far", "s", ValueAxisScale::from_zero,
         one([](const RunAtTap& moment) { return moment.result.robot_seconds; }));
   return without_constants(std::move(panels));
 }

@@ -17,7 +17,7 @@ struct Curve {
   std::vector<std::optional<double>> values;
 };
 
-enum class CurveAxis {
+enum class ValueAxisScale {
   free,
   from_zero,
   share,        ///< from 0 to 1
@@ -29,7 +29,7 @@ enum class CurveAxis {
 struct CurvePanel {
   std::string title;
   std::string unit;  ///< "" for no unit
-  CurveAxis axis = CurveAxis::from_zero;
+  ValueAxisScale axis = ValueAxisScale::from_zero;
   std::vector<Curve> curves;
 
   std::string full_title() const { return unit.empty() ? title : title + " [" + unit + "]"; }

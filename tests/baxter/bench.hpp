@@ -60,7 +60,8 @@ inline Snapshot sound(double now, const Joints& joints) {
   const long period = std::lround(100.0 * now);
   out.endpoint =
       EndpointReading{{now, now + 5.0, period}, gripper, {0.3, -0.2, 1.0 + 0.1 * std::sin(1000.0 * now)}, period};
-  out.state = StateReading{now, true, true, false, false, StateReading::Button::unpressed, StateReading::Source::none};
+  out.state =
+      StateReading{now, true, true, false, false, StateReading::Button::unpressed, StateReading::EstopSource::none};
   out.collision = CollisionReading{{now, now + 5.0}, false};
   for (auto* nodes : {&out.senders.joints, &out.senders.endpoint, &out.senders.state, &out.senders.collision}) {
     *nodes = {"/realtime_loop"};

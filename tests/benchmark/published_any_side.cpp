@@ -17,7 +17,7 @@
 #include "experiment/experiment_options.hpp"
 #include "solids/camera_rays.hpp"
 #include "solids/candidate_lines.hpp"
-#include "solids/cloud.hpp"
+#include "solids/cloud_distances.hpp"
 #include "support/runs.hpp"
 
 #include <CLI/CLI.hpp>

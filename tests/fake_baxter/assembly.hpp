@@ -23,14 +23,14 @@ class Assembly {
   }
 
   /// Stops the robot by software. For every stop without the button, its state is "unknown".
-  void stop() { halt(State::Button::unknown, State::Source::unknown); }
+  void stop() { halt(State::Button::unknown, State::EstopSource::unknown); }
 
-  void press() { halt(State::Button::pressed, State::Source::user); }
+  void press() { halt(State::Button::pressed, State::EstopSource::user); }
   void release() { state_.estop_button = State::Button::released; }
 
   /// Simulates a joint fault, which stops the robot.
   void fail() {
-    halt(State::Button::unknown, State::Source::fault);
+    halt(State::Button::unknown, State::EstopSource::fault);
     state_.error = true;
   }
 
@@ -48,7 +48,7 @@ class Assembly {
   /// An enabled robot is ready, because the simulated joints need no homing.
   void set_enabled(bool enabled) { state_.ready = state_.enabled = enabled; }
 
-  void halt(State::Button button, State::Source source) {
+  void halt(State::Button button, State::EstopSource source) {
     set_enabled(false);
     state_.stopped = true;
     state_.estop_button = button;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Clouds against all pairs of their points.
-#include "solids/cloud.hpp"
+#include "solids/cloud_distances.hpp"
 
 #include "solids/primitive.hpp"
 #include "support/shape_laws.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What a run counts of the factorisations of its models: each once, and jitter is a variance, never a count.
-#include "regular/count_factors.hpp"
+#include "regular/factor_diagnostics.hpp"
 #include "support/runs.hpp"
 #include "support/testing.hpp"
 

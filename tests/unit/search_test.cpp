@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The initial design `search`: where it looks, when it ends, and that it is no worse for what happens on the way.
+#include "experiment/initial_design.hpp"
 #include "experiment/search_design.hpp"
 #include "support/grids.hpp"
 

@@ -3,7 +3,7 @@
 #include "solids/camera_rays.hpp"
 
 #include "experiment/experiment.hpp"
-#include "solids/cloud.hpp"
+#include "solids/cloud_distances.hpp"
 #include "space_bench.hpp"
 #include "support/testing.hpp"
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // The search of what simple solids stand there, and what it sums up.
-#include "solids/solids.hpp"
+#include "solids/assembly_sampler.hpp"
 
-#include "solids/cloud.hpp"
+#include "solids/cloud_distances.hpp"
 #include "support/runs.hpp"
 #include "support/sanitizers.hpp"
 #include "support/shape_laws.hpp"

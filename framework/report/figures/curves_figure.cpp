@@ -200,7 +200,7 @@ PanelGrid grid_of(const GroupCurves& curves, const std::string& y_title, double 
 }
 
 /// Clauses of gnuplot's plot command that draw bands and lines.
-struct CurveClauses {
+struct PlotClauses {
   std::vector<std::string> bands;
   std::vector<std::string> lines;
 
@@ -272,7 +272,7 @@ std::string panel_labels(const FigureLayout& layout, const GroupCurves& curves, 
 void draw_panel(FigureLayout& layout, const GroupCurves& curves, const DrawnCurves& drawn, const PanelGrid& grid,
                 std::size_t panel) {
   const Box box = grid.box(panel);
-  CurveClauses clauses;
+  PlotClauses clauses;
   for (const GroupCurve* curve : drawn.curves) {
     if (curve->scene_name() != grid.scenes[panel] || curve->points.empty()) continue;
     const std::size_t group = place_in(grid.names, curve->name());

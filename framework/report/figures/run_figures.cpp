@@ -114,7 +114,7 @@ std::size_t name_lines(const CurvePanel& panel) {
 }
 
 void draw_curves(FigureLayout& layout, const Box& box, double top, const CurvePanel& panel, int number, int taps) {
-  // commands in the order of CurveAxis
+  // commands in the order of ValueAxisScale
   constexpr const char* kAxes[] = {"", "set yrange [0:*]\n", "set yrange [0:1]\n",
                                    "set logscale y\nset format y '%g'\n"};
   const std::string settings =

@@ -122,7 +122,8 @@ static void to_json(Json& out, const RunAtTap& moment) {
 static void to_json(Json& out, const Curve& curve) { out = {{"name", curve.name}, {"values", curve.values}}; }
 
 static void to_json(Json& out, const CurvePanel& panel) {
-  constexpr const char* kAxes[] = {"free", "from_zero", "share", "logarithmic"};  // names in the order of CurveAxis
+  constexpr const char* kAxes[] = {"free", "from_zero", "share",
+                                   "logarithmic"};  // names in the order of ValueAxisScale
   out = {{"title", panel.title},
          {"unit", panel.unit},
          {"axis", kAxes[static_cast<std::size_t>(panel.axis)]},

@@ -142,7 +142,7 @@ void explain_footprint(TextSections& sections, const Row& row, const std::string
 
 void explain_models(TextSections& sections, const Row& row, const ExperimentOptions& options,
                     const HeightMapOptions& own, const Context& context) {
-  const bool shared = own.label.hyperparameters == LabelOptions::HyperparameterSource::shared;
+  const bool shared = own.label.hyperparameters == LabelGpOptions::HyperparameterSource::shared;
   const PluginChoice height_kernel = own.height.kernel.value_or(options.kernel);
   const PluginChoice height_fitting = own.height.fitting.value_or(options.fitting);
   const PluginChoice label_kernel = shared ? height_kernel : own.label.kernel.value_or(options.kernel);

@@ -69,7 +69,7 @@ struct StateReading {
   bool stopped = false;
   bool error = false;
   enum class Button { unpressed, pressed, unknown, released } estop_button = Button::unpressed;
-  enum class Source { none, user, unknown, fault, brain } estop_source = Source::none;
+  enum class EstopSource { none, user, unknown, fault, brain } estop_source = EstopSource::none;
   long count = 0;  ///< see MessageArrival::count
 };
 

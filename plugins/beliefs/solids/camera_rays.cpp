@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "solids/camera_rays.hpp"
 
-#include "solids/cloud.hpp"
+#include "solids/cloud_distances.hpp"
 #include "solids/primitive.hpp"
 
 #include <Eigen/Geometry>

@@ -3,7 +3,7 @@
 // estimated surface.
 #pragma once
 
-#include "solids/solids.hpp"
+#include "solids/assembly_sampler.hpp"
 
 #include <palpate/belief.hpp>
 #include <palpate/random.hpp>

@@ -2,9 +2,9 @@
 // Values of candidate lines under the current solids and residual GP.
 #pragma once
 
+#include "solids/assembly_sampler.hpp"
 #include "solids/candidate_lines.hpp"
 #include "solids/residual_gp.hpp"
-#include "solids/solids.hpp"
 
 #include <palpate/belief_quantities.hpp>
 #include <palpate/random.hpp>

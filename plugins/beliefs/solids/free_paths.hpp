@@ -3,8 +3,8 @@
 // include these points (residual_gp.hpp).
 #pragma once
 
+#include "solids/assembly_sampler.hpp"
 #include "solids/residual_kernel.hpp"
-#include "solids/solids.hpp"
 
 #include <Eigen/Core>
 

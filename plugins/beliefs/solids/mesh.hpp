@@ -7,8 +7,8 @@
 // join the vertices of their common face in the same way, so two triangles share every edge of the mesh for any f.
 #pragma once
 
+#include "solids/assembly_sampler.hpp"
 #include "solids/residual_gp.hpp"
-#include "solids/solids.hpp"
 
 #include <palpate/surface.hpp>
 

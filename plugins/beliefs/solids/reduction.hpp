@@ -16,8 +16,8 @@
 // by Cohn's criterion (Cohn 1996), with standard deviations instead of variances.
 #pragma once
 
+#include "solids/assembly_sampler.hpp"
 #include "solids/residual_gp.hpp"
-#include "solids/solids.hpp"
 
 #include <Eigen/Core>
 

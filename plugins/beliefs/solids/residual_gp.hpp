@@ -26,9 +26,9 @@
 #pragma once
 
 #include "regular/regular_factor.hpp"
+#include "solids/assembly_sampler.hpp"
 #include "solids/free_paths.hpp"
 #include "solids/residual_kernel.hpp"
-#include "solids/solids.hpp"
 
 #include <palpate/kernel.hpp>
 #include <palpate/types.hpp>

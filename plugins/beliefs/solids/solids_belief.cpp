@@ -2,7 +2,7 @@
 #include "solids/solids_belief.hpp"
 
 #include "gp/finite.hpp"
-#include "regular/count_factors.hpp"
+#include "regular/factor_diagnostics.hpp"
 #include "solids/camera_rays.hpp"
 #include "solids/mesh.hpp"
 

@@ -3,10 +3,10 @@
 // and of a residual GP that corrects the most probable particle.
 #pragma once
 
+#include "solids/assembly_sampler.hpp"
 #include "solids/candidate_lines.hpp"
 #include "solids/candidate_quantities.hpp"
 #include "solids/residual_gp.hpp"
-#include "solids/solids.hpp"
 #include "solids/solids_options.hpp"
 #include "solids/surface_errors.hpp"
 #include "solids/touch_log.hpp"

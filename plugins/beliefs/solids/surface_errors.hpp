@@ -3,10 +3,10 @@
 // volumes.
 #pragma once
 
+#include "solids/assembly_sampler.hpp"
 #include "solids/candidate_lines.hpp"
-#include "solids/cloud.hpp"
+#include "solids/cloud_distances.hpp"
 #include "solids/residual_gp.hpp"
-#include "solids/solids.hpp"
 #include "solids/volume.hpp"
 
 #include <palpate/errors.hpp>

@@ -2,8 +2,8 @@
 // Common volume of two solids: a grid of cubes over a region, represented by their centres.
 #pragma once
 
+#include "solids/assembly_sampler.hpp"
 #include "solids/residual_gp.hpp"
-#include "solids/solids.hpp"
 
 #include <palpate/scene.hpp>
 

@@ -128,26 +128,26 @@ Grid from_npy(const std::string& bytes, const std::string& file) {
 #ifdef PALPATE_PNG
 
 /// The bytes that libpng reads, and its error message.
-struct Source {
+struct PngInput {
   std::string_view rest;
   std::string reason;
 };
 
 void hand_out(png_structp png, png_bytep to, std::size_t size) {
-  Source& source = *static_cast<Source*>(png_get_io_ptr(png));
+  PngInput& source = *static_cast<PngInput*>(png_get_io_ptr(png));
   if (source.rest.size() < size) png_error(png, "is cut short");
   std::memcpy(to, source.rest.data(), size);
   source.rest.remove_prefix(size);
 }
 
 void note(png_structp png, png_const_charp reason) {
-  static_cast<Source*>(png_get_error_ptr(png))->reason = reason;
+  static_cast<PngInput*>(png_get_error_ptr(png))->reason = reason;
   png_longjmp(png, 1);
 }
 
 /// Decodes into `out`. After an error, libpng leaves the function by longjmp, and the function returns false. No local
 /// variable may therefore need a destructor.
-bool decode(png_structp png, png_infop info, Source& source, Grid& out, std::vector<png_byte>& row, bool& is_grey,
+bool decode(png_structp png, png_infop info, PngInput& source, Grid& out, std::vector<png_byte>& row, bool& is_grey,
             const std::string& file) {
   if (setjmp(png_jmpbuf(png)) != 0) return false;
   png_set_read_fn(png, &source, hand_out);
@@ -172,7 +172,7 @@ bool decode(png_structp png, png_infop info, Source& source, Grid& out, std::vec
 }
 
 Grid from_png(const std::string& bytes, const std::string& file) {
-  Source source{bytes, "is not a PNG"};
+  PngInput source{bytes, "is not a PNG"};
   png_structp png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &source, note, [](png_structp, png_const_charp) {});
   png_infop info = png != nullptr ? png_create_info_struct(png) : nullptr;
   const struct Guard {

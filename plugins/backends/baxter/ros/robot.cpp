@@ -338,7 +338,7 @@ class RosRobot final : public RosConnection {
                                 message.stopped != 0,
                                 message.error != 0,
                                 static_cast<StateReading::Button>(message.estop_button),
-                                static_cast<StateReading::Source>(message.estop_source),
+                                static_cast<StateReading::EstopSource>(message.estop_source),
                                 (latest.state ? latest.state->count : 0) + 1};
   }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "solids/cloud.hpp"
+#include "solids/cloud_distances.hpp"
 
 #include "solids/primitive.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "solids/solids.hpp"
+#include "solids/assembly_sampler.hpp"
 
 #include "scene/rotation.hpp"
 
