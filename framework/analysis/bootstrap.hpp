@@ -11,12 +11,12 @@
 namespace palpate {
 
 /// Default number of resamples. Samples of fewer than 1000 clusters get up to ten times as many. Samples of more than
-/// 10000 clusters get fewer, but at least 2000. With these numbers, a different random stream changes the ends of an
-/// interval by about 1 % of its width.
+/// 10000 clusters get fewer, but at least 2000. With these numbers of resamples, another random stream changes the ends
+/// of an interval by about 1 % of its width.
 inline constexpr std::size_t kResamples = 10000;
 
-/// Least number of clusters for an interval. Resampled means stay within the range of the values. With four clusters,
-/// this range misses the true mean in one of eight samples.
+/// Least number of clusters for an interval. A bootstrap interval cannot extend beyond the range of the values. With
+/// four clusters, this range does not contain the true mean in one of eight samples.
 inline constexpr std::size_t kLeastForInterval = 5;
 
 /// Least number of clusters for a bootstrap interval. From 20 clusters on, the bootstrap interval has the same coverage
@@ -25,7 +25,7 @@ inline constexpr std::size_t kLeastForInterval = 5;
 inline constexpr std::size_t kLeastForBootstrap = 20;
 
 /// Returns the mean of finite values with a 95 % interval: Student's t below kLeastForBootstrap clusters, else
-/// bootstrap_mean(). For each number of clusters, this is the interval with the better coverage of the two. Fewer than
+/// bootstrap_mean(). For each number of clusters, this choice gives the interval with the better coverage. Fewer than
 /// kLeastForInterval clusters, or clusters that are all_equal() with this `scale`, have no interval.
 MeanEstimate mean_of_sample(const Clusters& clusters, double scale = 0.0);
 

@@ -18,7 +18,8 @@ namespace palpate {
 std::string Column::words() const {
   const RecordField* field = find_summary_field(name);
   if (field == nullptr || field->label.empty()) return name;
-  // Labels of lengths, such as "over the scene", do not name the quantity, because they follow a heading on a page.
+  // Labels of lengths, such as "over the scene", do not name the quantity, because pages show them below a heading that
+  // names it.
   if (unit != Unit::metre) return field->label;
   return (name.find("rmse") != std::string::npos ? "RMSE " : "distance ") + field->label;
 }

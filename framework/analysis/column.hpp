@@ -41,8 +41,8 @@ CellNumber number_of(const Scalar* cell);
 /// missing or not finite.
 std::string written_in(const std::string& column, const Scalar& cell);
 
-/// Status of a job's value in a comparison. The status of a pair of jobs is the status of its two jobs that comes first
-/// in this list.
+/// Status of a job's value in a comparison. A pair of jobs has the status of one of its jobs: the status that comes
+/// first in this list.
 enum class ValueStatus {
   left_out,  ///< The job does not satisfy the condition. A condition on a value that the job lacks is false.
   without_partner,

@@ -35,7 +35,7 @@ using JobOutcomes = std::map<Values, JobOutcome>;
 struct GroupOutcomes {
   Values values;
   JobOutcomes outcomes;
-  int never = 0;  ///< number of counted jobs that never reached the goal of Comparison::occasion
+  int never = 0;  ///< number of counted jobs that never reached the checkpoint Comparison::occasion
 };
 
 bool contains(const Values& names, const std::string& name) {
@@ -180,8 +180,8 @@ void adjust(std::vector<ComparedPair>& pairs) {
 /// Returns a name without blanks, so that "weighted,rbf" also names the group "weighted, rbf".
 std::string without_blanks(const std::string& name) { return boost::algorithm::erase_all_copy(name, " "); }
 
-/// Groups that are compared with each other: the groups of one scene, because results on different scenes are not
-/// comparable. If all keys of `--by` belong to the scene, one block has all groups.
+/// Groups that are compared with each other. These are the groups of one scene, because results on different scenes are
+/// not comparable. If all keys of `--by` belong to the scene, one block has all groups.
 struct ComparedBlock {
   std::vector<std::size_t> groups;
   std::size_t baseline = 0;

@@ -41,7 +41,7 @@ struct ComparedGroup {
   std::string name;  ///< values in the order of the keys: "weighted, rbf"; "(none)" for a key that the jobs lack
   std::vector<std::string> values;  ///< the values in `name`, as a list
   StatusCounts counts;
-  /// number of jobs that never reached the goal of Comparison::occasion; such jobs count with their final values
+  /// number of jobs that never reached the checkpoint Comparison::occasion; such jobs count with their final values
   int never = 0;
   MeanEstimate mean;  ///< mean over the jobs with a value; the clusters are the units of StatisticalUnits
   double median = 0.0;
@@ -58,7 +58,8 @@ struct ComparedPair {
   StatusCounts lost;
   /// mean difference; `count` is the number of pairs, and clusters are pairs with equal units (StatisticalUnits)
   MeanEstimate difference;
-  /// Mean of the first group divided by mean of the second group; nullopt if not requested or not defined.
+  /// Mean of the first group divided by the mean of the second group; nullopt if the ratio was not requested or is not
+  /// defined.
   std::optional<RatioEstimate> ratio;
   SignedRank test;  ///< test of the means per unit (StatisticalUnits)
   /// p of the test, adjusted for all pairs of this comparison; nullopt for a single pair
@@ -86,10 +87,12 @@ struct Comparison {
   /// whether the groups belong to several scenes and `by` also has other keys; groups of different scenes are then not
   /// paired
   bool scenes_apart = false;
-  bool ratios = false;                 ///< whether ratios were requested
-  std::optional<Checkpoint> occasion;  ///< checkpoint at which jobs are compared; nullopt for the end of each job
-  int jobs = 0;                        ///< number of jobs of the sweep
-  StatusCounts left_out;               ///< jobs that the condition leaves out, by their status without the condition
+  bool ratios = false;  ///< whether ratios were requested
+  /// checkpoint at which jobs are compared; nullopt if jobs are compared at their ends
+  std::optional<Checkpoint> occasion;
+  int jobs = 0;  ///< number of jobs of the sweep
+  /// jobs that the condition leaves out, by the status that they would have without the condition
+  StatusCounts left_out;
 };
 
 /// Largest number of groups per scene for which all pairs are compared. With more groups, each group is compared only

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Output of comparisons: text tables with remarks, tables of means in Markdown and LaTeX, and rows for programs.
+// Output of comparisons: text tables with remarks, tables of means in Markdown and LaTeX, and machine-readable rows
+// (CSV, JSON).
 #pragma once
 
 #include "analysis/compare.hpp"

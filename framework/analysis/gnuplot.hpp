@@ -33,7 +33,7 @@ inline constexpr int kPrintDpi = 300;
 
 /// Returns the first lines of a script, which set gnuplot's terminal and output. The extension of `file` (.png, .pdf or
 /// .svg) determines the terminal, for a picture of `width` by `height` units. `output` is the file that gnuplot writes.
-/// For print, the lines also define the variable `mark_size`: the size of marks that suits letters of 8 points.
+/// For print, the lines also define gnuplot's variable `mark_size`, the size of marks that suits letters of 8 points.
 std::string picture_header(int width, int height, const std::filesystem::path& file, const std::string& output,
                            PictureUnit unit = PictureUnit::pixel);
 

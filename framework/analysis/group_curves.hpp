@@ -79,11 +79,11 @@ std::vector<std::string> curve_keys(const Sweep& sweep);
 /// Makes the curves of the jobs of `sweep`. `results` are the rows of results.csv. `values` must contain at least the
 /// metric and the axis.
 ///
-/// Against taps, a group has one point per tap up to the longest of its jobs. Against robot time, it has 60 points. The
-/// first point is the time at which all jobs of the group have made a tap. The last point is the end of the last job.
-/// At each point, a job counts with its value after the last tap that it has made by then. A job that has ended counts
-/// with its final value, as in `compare --at`. Jobs that failed or have not ended are left out. Throws the errors of
-/// compare(), and Error if there is nothing to draw.
+/// Against taps, a group has one point per tap, up to the largest number of taps of its jobs. Against robot time, a
+/// group has 60 points. The first point is the time at which all jobs of the group have made a tap. The last point is
+/// the end of the last job. At each point, a job counts with its value after the last tap that it has made by then. A
+/// job that has ended counts with its final value, as in `compare --at`. Jobs that failed or have not ended are left
+/// out. Throws the errors of compare(), and Error if there is nothing to draw.
 GroupCurves make_group_curves(const Sweep& sweep, const std::vector<Row>& results, const std::vector<TapValues>& values,
                               const CurvesQuery& query);
 

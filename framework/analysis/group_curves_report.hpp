@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Output of group curves: a table with remarks, and rows for programs. The picture of the curves is in report/figures.
+// Output of group curves: a table with remarks, and machine-readable rows (CSV, JSON). The picture of the curves is in
+// report/figures.
 #pragma once
 
 #include "analysis/group_curves.hpp"

@@ -93,7 +93,7 @@ class StatisticalUnits {
  private:
   const Sweep& sweep_;
   bool are_seeds_ = false;
-  std::set<std::string> compared_;  ///< columns in which copies are equal, if jobs are the units
+  std::set<std::string> compared_;  ///< columns in which copies of a run must be equal; used if jobs are the units
 };
 
 /// Sorts values into clusters, one per unit of StatisticalUnits, in the order in which units first appear.

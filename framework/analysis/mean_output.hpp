@@ -33,8 +33,8 @@ std::string units_words(std::size_t units, bool seeds);
 /// Returns "3 to 5 seeds", or "5 seeds" if both numbers are 5.
 std::string units_words(std::size_t least, std::size_t most, bool seeds);
 
-/// Number of seeds or jobs below which a remark warns that there are few. With fewer, 95 % intervals miss the true mean
-/// clearly more often than 5 times in 100.
+/// Least number of seeds or jobs without a remark that there are few. With fewer seeds or jobs, 95 % intervals miss the
+/// true mean clearly more often than 5 times in 100.
 inline constexpr std::size_t kEnoughUnits = 10;
 
 /// Returns a remark about a mean over few seeds or jobs; "" if `units` is at least kEnoughUnits. `least` is the

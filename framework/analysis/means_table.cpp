@@ -17,8 +17,8 @@ namespace {
 /// decimals.
 constexpr int kDigits = 2;
 
-/// Significant digits of the smallest mean in a table with intervals. This number applies only to means without an
-/// interval. Text tables use the same number.
+/// Significant digits of the smallest mean that has no interval, in a table with intervals. Text tables use the same
+/// number.
 constexpr int kDigitsBesideIntervals = 3;
 
 /// Returns the scale of a metric over all rows. The comparisons of this metric have the indices `first`, `first` +

@@ -24,7 +24,8 @@ DisplayScale scale_of(const Pareto& pareto, const Column& key, Field field) {
   return readable_scale(key.unit, means);
 }
 
-/// Returns the least and the largest number of units, over the settings that have a value.
+/// Returns the smallest and the largest number of units of statistics (StatisticalUnits) among the settings with cost
+/// and error.
 std::pair<std::size_t, std::size_t> seeds_of(const Pareto& pareto) {
   std::size_t fewest = kEnoughUnits;
   std::size_t most = 0;
@@ -43,15 +44,15 @@ std::string cost_text(const Setting& setting, const DisplayScale& scale) {
   return fmt::format("{} +- {}", scale.number(cost.mean), half);
 }
 
-/// An axis with its range in its unit.
+/// An axis, with its range in the unit of the axis.
 struct PlotAxis {
   DisplayScale scale;
   double low = 0.0;
   double high = 1.0;
   bool logarithmic = false;
 
-  /// Returns "mean low high". On a logarithmic axis, ends of the interval below the axis are moved to its lower end,
-  /// because they may not be positive.
+  /// Returns "mean low high". On a logarithmic axis, an end of the interval that is below the axis is moved to the
+  /// lower end of the axis, because the logarithm needs positive numbers.
   std::string columns(const MeanEstimate& estimate) const {
     const MeanInterval ends = interval_or_mean(estimate);
     const auto clipped = [&](double value) { return logarithmic ? std::max(value, low) : value; };

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Output of a Pareto front: a table, rows for programs, a gnuplot script, and texts about a single setting.
+// Output of a Pareto front: a table, machine-readable rows (CSV, JSON), a gnuplot script, and texts about a single
+// setting.
 #pragma once
 
 #include "analysis/pareto.hpp"
@@ -20,9 +21,9 @@ std::string pareto_table(const Pareto& pareto);
 /// intervals, in SI units.
 std::vector<Row> pareto_rows(const Pareto& pareto);
 
-/// Returns a gnuplot script without the settings of terminal and output. The script draws every setting with its
-/// intervals, the front as a numbered step line, and the names of the settings on the front. It draws `bound` as a line
-/// and marks the setting `chosen`; `chosen` may be null.
+/// Returns a gnuplot script that does not set terminal and output. The script draws every setting with its intervals,
+/// the front as a numbered step line, and the names of the settings on the front. It draws `bound` as a line and marks
+/// the setting `chosen`; `chosen` may be null.
 std::string pareto_script(const Pareto& pareto, const std::string& title, const std::optional<double>& bound,
                           const Setting* chosen);
 

@@ -35,8 +35,8 @@ double rank(std::vector<RankedDifference>& sorted) {
   return ties;
 }
 
-/// Returns the probability that a rank sum is at most `doubled_sum` / 2 if every sign is random. The distribution is
-/// built by adding one rank at a time.
+/// Returns the probability that a rank sum is at most `doubled_sum` / 2 if every sign is random. Computes the
+/// distribution of the rank sum by adding one rank at a time.
 double share_at_most(const std::vector<RankedDifference>& ranked, std::size_t doubled_sum) {
   std::vector<double> share(doubled_sum + 1, 0.0);
   share[0] = 1.0;

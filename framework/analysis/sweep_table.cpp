@@ -31,7 +31,8 @@ struct SweepTableRow {
   bool is_initial_known = false;
   std::vector<double> object_taps_rest, object_taps_all, rmse, iou;  ///< values of the done jobs, ascending
 
-  /// Returns the sorting key within a scene: the median error, infinite for a group without an error.
+  /// Returns the number by which the groups of a scene are sorted: the median RMSE, or infinity for a group without an
+  /// RMSE.
   double median_rmse() const { return rmse.empty() ? std::numeric_limits<double>::infinity() : quantile(rmse, 0.5); }
 };
 
@@ -44,7 +45,7 @@ std::string spread(const std::vector<double>& values, const DisplayScale& scale)
 
 SweepTableRow row_of(const JobGroup& group, const std::string& error, const InitialTaps& initial_taps) {
   SweepTableRow out;
-  // Largest number of jobs whose configs are read. It exceeds one because a config may be damaged.
+  // Largest number of jobs whose configs are read. One config would suffice, but it may be damaged.
   constexpr std::size_t kMostAsked = 3;
   std::optional<int> initial;  // number of initial taps, equal for all jobs of a group
   for (std::size_t i = 0; i < std::min(kMostAsked, group.jobs.size()) && !initial; ++i) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The table class of all outputs: text for terminals, Markdown, LaTeX, rows for CSV and JSON, and cells for pages.
+// The table class that all outputs use: text for terminals, Markdown, LaTeX, rows for CSV and JSON, and cells for
+// pages.
 #pragma once
 
 #include "record/row.hpp"
@@ -12,8 +13,8 @@
 
 namespace palpate {
 
-/// A table with cells for display, each with a title, and fields for programs, each with a name. All rows must have the
-/// same titles in the same order.
+/// A table with cells for display, each with a title, and fields for machine-readable output (CSV, JSON), each with a
+/// name. All rows must have the same titles in the same order.
 ///
 ///       table.add_row();
 ///       table.show("failed", "2", Table::Kind::count);
@@ -30,14 +31,14 @@ class Table {
   void add_row() { rows_.emplace_back(), next_ = 0; }
   /// Adds a displayed cell to the last row.
   void show(const std::string& title, std::string cell, Kind kind = Kind::number);
-  /// Adds a field for programs to the last row. The value is a scalar or an optional scalar. An empty optional is
-  /// stored as null.
+  /// Adds a field to the last row that appears only in machine-readable output (CSV, JSON). The value is a scalar or an
+  /// optional scalar. An empty optional is stored as null.
   template <class Value>
   void store(std::string name, Value value) {
     rows_.back().add(std::move(name), std::move(value));
   }
 
-  /// Returns the fields for programs: one row per row of the table, in SI units.
+  /// Returns the fields of store() as one row per row of the table, in SI units.
   const std::vector<Row>& rows() const { return rows_; }
   Row& last_row() { return rows_.back(); }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A camera's view of the scene before the first tap, as heights and labels for the models. Unseen and unclear parts of
-// the desk give no data.
+// Converts a camera's view of the scene before the first tap to heights and labels, from which the models learn. Unseen
+// and unclear parts of the desk give no data.
 #pragma once
 
 #include "belief/point_cloud.hpp"
@@ -50,11 +50,11 @@ inline constexpr int kSquaresAcross = 14;
 /// Transforms points into the frame of the area, metres.
 PointCloud in_area_frame(const PointCloud& points, const PriorOptions& options);
 
-/// Computes the data of each square from points in the frame of the area. An offset is estimated from the squares of
-/// the desk, whose height is known; `bias` is its prior standard deviation. A square is on an object if it is clearly
-/// above the desk and satisfies `scene.on_object()`, and on the desk if it is not above the desk. Other squares, for
-/// example at an edge, are left out. The result is sorted by rows, in ascending y. Throws Error if no point is in the
-/// area.
+/// Computes the data of each square from points in the frame of the area. The offset of all heights is estimated from
+/// the squares on the bare desk, whose height is known; `bias` is its prior standard deviation. A square is on an
+/// object if it is clearly above the desk and satisfies `scene.on_object()`, and on the desk if it is not above the
+/// desk. Other squares, for example at an edge, are left out. The result is sorted by rows, in ascending y. Throws
+/// Error if no point is in the area.
 std::vector<ViewedSquare> viewed_squares(const PointCloud& points, const PriorOptions& options, const Scene& scene);
 
 /// Reads the file of `options` and computes the data of its squares. Returns no squares if `options` is nullopt. Throws

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The contacts of all taps with their current readings, and the data from which the models learn.
+// Stores the contacts of all taps with their current readings (corrected height and label; see contact_reader.hpp), and
+// the data from which the models learn.
 #pragma once
 
 #include "belief/camera_view.hpp"
@@ -16,11 +17,11 @@
 
 namespace palpate {
 
-/// Taps, and the data from which the models learn: first the points of the prior view, then the contacts. A row is the
-/// index of a datum. Heights are metres above the desk.
+/// Taps, and the data from which the models learn: first the squares of the camera's view, then the contacts. A row is
+/// the index of a datum. Heights are metres above the desk.
 class ContactLog {
  public:
-  /// `scene` must outlive the log. Throws Error for a prior view that cannot be read.
+  /// `scene` must outlive the log. Throws Error if the camera's view cannot be read.
   ContactLog(const HeightMapOptions& options, const Scene& scene);
 
   /// Returns the reader of contacts in its current state.
@@ -40,12 +41,12 @@ class ContactLog {
   const std::vector<Touch>& object_contacts() const { return object_contacts_; }
   const std::vector<int>& tap_numbers() const { return tap_numbers_; }
 
-  // The data: points of the prior view and contacts.
+  // The data: squares of the camera's view, and contacts.
   int size() const { return prior_size() + static_cast<int>(contacts_.size()); }
   int prior_size() const { return static_cast<int>(prior_.size()); }
   const std::vector<ViewedSquare>& prior() const { return prior_; }
   const Touch& datum(int row) const;
-  /// Rows of the data on objects in ascending order, and how many of these rows are from the prior view.
+  /// Return the rows of all data on objects in ascending order, and the number of such rows from the camera's view.
   const std::vector<int>& object_rows() const { return object_rows_; }
   int prior_objects() const { return prior_objects_; }
   /// Returns the trust in the height of each datum, in (0, 1]. The trust is `noise`^2 divided by the noise variance of
@@ -68,7 +69,7 @@ class ContactLog {
   bool uneven_ = false;
   // One value per contact.
   std::vector<int> tap_numbers_;
-  /// Variance of a height by the most precise motion, divided by the variance by the contact's own motion.
+  /// Variance of heights that the most precise motion measures, divided by the variance for the contact's own motion.
   std::vector<double> shares_;
 };
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The footprint of the belief: which candidates are on an object. Its plugin receives the data of the log when a reader
-// first needs the footprint.
+// The footprint of the belief: which candidates are on an object. Its plugin receives the data of the log only when
+// another part of the run first needs the footprint.
 #pragma once
 
 #include "belief/contact_log.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// One Gaussian process of the belief: kernel, fitting and hyperparameters, and the posterior, which is built when a
-// reader first needs it.
+// One Gaussian process of the belief: kernel, fitting, hyperparameters and posterior. The posterior is built only when
+// another part of the run first needs it.
 #pragma once
 
 #include <palpate/phases.hpp>
@@ -53,12 +53,13 @@ class GpModel {
   double noise() const { return process_ ? process_->settings().noise : description_.outputs.front().noise; }
 
   // Updates. Each function does nothing before show(), and marks the maps as stale if the posterior changes.
-  /// Adds the data of the log that are missing in the GP, one by one, each followed by the fit that is due. So a model
-  /// that is built late passes through the same states as a model that was built before the first tap.
+  /// Adds the data of the log that the GP lacks, one by one, with a fit after each datum for which a fit is due. So a
+  /// model that is built late passes through the same states as a model that was built before the first tap.
   void add_data(const ContactLog& log, PhaseClock* clock);
   /// Sets the heights of all data to their current readings.
   void set_heights(const ContactLog& log);
-  /// Set the positions of all data, or the trust in them. The argument has one row, or one value, per datum of the log.
+  /// Set the positions of all data, or the trust in all data. `positions` has one row, and `trust` one value, per datum
+  /// of the log.
   void set_positions(const ContactLog& log, const Points& positions);
   void set_trust(const ContactLog& log, const Eigen::VectorXd& trust);
   /// Removes all data, because labels have changed.
@@ -77,7 +78,7 @@ class GpModel {
   int prior_size(const ContactLog& log) const {
     return description_.only_objects ? log.prior_objects() : log.prior_size();
   }
-  /// Returns the row in the log of a datum of this model.
+  /// Returns the row of the log that contains the datum with the index `datum` in this model.
   int row(const ContactLog& log, int datum) const {
     return description_.only_objects ? log.object_rows()[static_cast<std::size_t>(datum)] : datum;
   }

@@ -63,7 +63,7 @@ class HeightMapBelief final : public Belief {
   CandidateGrid grid_;
   HeightModels models_;
   ReadPlan plan_;
-  ModelSet begun_;  ///< models that the readers of begun stages need; their states are recorded
+  ModelSet begun_;  ///< models that are needed in the stages begun so far; their states are recorded
   TapsSoFar taps_;
   mutable Eigen::VectorXd height_std_, measurement_std_;  ///< computed when they are read
   const Scene* scene_ = nullptr;                          ///< the true scene; null if it is not known

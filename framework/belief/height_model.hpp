@@ -10,7 +10,7 @@
 
 namespace palpate {
 
-/// Maps have M values, and are empty before the first update.
+/// Maps have one value per candidate (M values), and are empty before the first update.
 class HeightModel {
  public:
   /// `has_mean`: whether mean() is computed, because it is the surface (`surface: single`). `desk`: height of the desk,
@@ -38,7 +38,7 @@ class HeightModel {
   Eigen::VectorXd uncertainty_, variance_, mean_;
 };
 
-/// The map of the label GP, which is output 1 of the height GP if both have the same hyperparameters.
+/// The map of the label GP. The label GP may be output 1 of the height GP (see height_models.hpp).
 class LabelMap {
  public:
   /// `clip`: whether weight() is clipped.

@@ -10,10 +10,11 @@
 
 namespace palpate {
 
-// Standard deviation of the unknown constant level of object heights, in signals. A thousand signals leave the level
-// practically free, unless the surface varies by less than a thousandth of its height.
+// Standard deviation of the unknown constant level of object heights, as a multiple of the signal. With the multiple
+// 1000, the level is practically free, unless the surface varies by less than a thousandth of its height.
 constexpr double kFreeLevel = 1000.0;
-// The same with an outlier model. If the level were free, the first object tap would count as an outlier.
+// The same multiple for a GP with an outlier model. If the level were free, the first object tap would count as an
+// outlier.
 constexpr double kLevelWithOutliers = 1.0;
 
 namespace {
@@ -181,7 +182,8 @@ void HeightModels::add_data() {
   for_each_gp([&](GpModel& gp) { gp.set_positions(log_, footprint_->positions()); });
 }
 
-/// Updates the outlier probabilities, and sets the trust of the models of heights in each contact accordingly.
+/// Updates the outlier probabilities. Then sets the trust in each contact accordingly, in the height GP and in the
+/// surface GP.
 void HeightModels::find_outliers() {
   Eigen::VectorXd probabilities;
   if (outliers() != nullptr) {

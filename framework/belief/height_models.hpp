@@ -23,11 +23,11 @@
 
 namespace palpate {
 
-/// A set of models. Comments name the quantities that a model offers as arrays.
+/// A set of models. The comment of a member lists the quantities that its model provides as arrays.
 struct ModelSet {
   bool heights = false;      ///< the height GP: uncertainty, measurement_std
   bool labels = false;       ///< the label GP: label_mean
-  bool surface = false;      ///< the surface GP of `two_part`, without arrays: heights at one candidate
+  bool surface = false;      ///< the surface GP of `two_part`, only for heights at single candidates; no arrays
   bool surface_map = false;  ///< the surface GP with its arrays: height_mean, height_std
   bool footprint = false;    ///< a footprint that is not the label GP
   bool hypotheses = false;
@@ -41,7 +41,7 @@ class HeightModels {
 
   const ContactLog& log() const { return log_; }
 
-  /// Returns the models that `quantities` need; one of these may be kOutliers. `at_one_candidate`: whether the
+  /// Returns the models that `quantities` need. kOutliers may be one of the quantities. `at_one_candidate`: whether the
   /// quantities are only read by predict().
   ModelSet models_of(const QuantitySet& quantities, bool at_one_candidate = false) const;
   /// Internal quantity: the outlier probabilities of contacts. They need the surface GP, but not its arrays.
@@ -91,7 +91,7 @@ class HeightModels {
   /// Returns null if the footprint is the label GP.
   const FootprintModel* footprint() const { return footprint_ ? &*footprint_ : nullptr; }
 
-  /// Sets `out` to the current readings of all contacts by the log and the built models.
+  /// Sets `out` to the current readings of all contacts, from the log and the built models.
   void read_again(std::vector<TapReading>& out) const;
   /// Returns the number of failed fits (FitSummary::failed), which kept the old hyperparameters.
   int failed_fits() const;

@@ -48,7 +48,7 @@ Errors errors_of(const SurfaceMaps& maps, const Truth& truth);
 struct Calibration {
   /// Mean negative natural logarithm of the predictive density in 1/m; absent if the variance of a cell is 0.
   std::optional<double> nlpd;
-  std::optional<double> coverage_95;  ///< share of cells within the central 95 % interval
+  std::optional<double> coverage_95;  ///< share of cells whose true height is within the central 95 % interval
 };
 /// Returns the calibration of heights. `variance`: variance of the heights, square metres; `noise`: standard deviation
 /// of the noise of a tap, metres; `tapped`: whether each candidate has been tapped.

@@ -5,9 +5,9 @@
 // is at least 1/2. Predicted cells form components of cells that share a side. A component holds an object if it
 // contains at least a fifth of the object's cells.
 //
-// Two objects are merged if one component holds both of them, although their true cells do not touch, not even at a
-// corner. So there is a visible gap between them. An object is split if several components hold it although its own
-// cells are one component.
+// Two objects count as merged if one component holds both objects, although their true cells do not touch, not even at
+// a corner. The true objects then have a visible gap between them. An object counts as split if several components hold
+// it, although its true cells form one component.
 #pragma once
 
 #include "belief/metrics.hpp"

@@ -35,7 +35,7 @@ bool OutlierModel::update(const ContactLog& log, const GpModel& objects, const F
   if (footprint != nullptr) footprint->doubt(label_error);
   by_label_ = label_error.tail(contacts);
   probabilities_ = by_label_;
-  // Points of the prior view cannot be outliers; they are only less exact.
+  // Squares of the camera's view cannot be outliers; their heights are only less exact.
   const auto objects_count = static_cast<Eigen::Index>(log.object_rows().size());
   Eigen::VectorXd prior = Eigen::VectorXd::Zero(objects_count);
   Eigen::VectorXd roughness = Eigen::VectorXd::Zero(log.prior_size() > 0 ? objects_count : 0);

@@ -35,7 +35,8 @@ void SurfaceModel::find_outliers(const ContactLog& log, const Footprint* footpri
 
 void SurfaceModel::update_maps(const ContactLog& log) {
   if (!gp_.is_built()) return;
-  // The surface without outliers has its own maps; the maps of the GP are then needed only for the record.
+  // If the outlier model provides the surface, it has its own maps, and the maps of the GP are needed only for the
+  // record.
   if (has_maps_ || !is_without_outliers()) gp_.update_maps();
   if (!gp_.is_stale() || !has_maps_) return;
   if (is_without_outliers()) {

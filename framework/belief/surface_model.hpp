@@ -24,8 +24,8 @@ class SurfaceModel {
   GpModel& gp() { return gp_; }
   const GpModel& gp() const { return gp_; }
 
-  /// Builds the GP, and optionally keeps maps from the next update_maps() on. Returns whether the GP or the maps did
-  /// not exist before.
+  /// Builds the GP. If `maps` is true, the next and all later calls of update_maps() compute maps. Returns whether the
+  /// GP or the maps did not exist before.
   bool show(bool maps);
   /// Removes all data, because labels have changed.
   void reset();

@@ -21,19 +21,20 @@ constexpr double kMillimetre = 1e-3;
 constexpr double kMillimetrePerMinute = 1e-3 / 60.0;
 /// Largest height of a false contact above the highest object, metres.
 constexpr double kAbove = 0.1;
-/// At most one in kFar contacts of a run may be far from the scene. A larger share is implausible for false contacts
-/// and shows that the scene differs from its config.
+/// At most one in kFar contacts of a run may be far from the scene. A larger share means that the real scene differs
+/// from its config, because false contacts are less frequent.
 constexpr std::size_t kFar = 5;
-/// At most one in kThrough contacts of a run may be below the surface, because false contacts occur above it.
+/// At most one in kThrough contacts of a run may be below the surface. False contacts occur above the surface, so they
+/// cannot explain more.
 constexpr std::size_t kThrough = 20;
-/// Largest offset in addition to the offset of the assumed effects, metres. A larger offset shows that the desk has
-/// another height than in the config. For comparison, a perfect arm with the motion `paper` has an offset of 14 mm.
+/// Largest offset of the measured heights that the assumed effects do not explain, metres. A larger offset means that
+/// the desk's height differs from the config. A perfect arm with the motion `paper` has an offset of 14 mm.
 constexpr double kMostOffset = 0.03;
-/// Least share of an effect's events (such as missed contacts) that must be visible in the results of the recorded
-/// motions. With a smaller share, the rate of the effect cannot be estimated.
+/// Smallest share of an effect's events (such as missed contacts) that the results of the taps must reveal. If the
+/// recorded motions reveal a smaller share, the rate of the effect cannot be estimated.
 constexpr double kShown = 0.1;
 
-/// Effects that cannot be estimated from such taps, with default values for an arm similar to Baxter's.
+/// Effects that cannot be estimated from recorded taps, with default values for an arm similar to Baxter's.
 constexpr std::pair<const char*, const char*> kAssumed[] = {{"force_noise", "{deviation: 1.5 N}"},
                                                             {"force_drift", "{per_metre: 10 N/m}"},
                                                             {"stiffness", "{object: 1500 N/m}"},

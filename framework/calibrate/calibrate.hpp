@@ -10,9 +10,9 @@
 namespace palpate {
 
 /// Returns the text of an effects file (`effects: ...`, as in configs/effects). The effects are fitted to recorded
-/// taps, for which the objects must have stood as the configs of the runs describe. Comments in the file give the
-/// interval and the source of each value. Some effects are assumed. Their simulated errors are subtracted before the
-/// fit. With all effects of the file, the simulator therefore has the same mean error as the arm.
+/// taps. During these taps, the objects must have been at the positions given in the configs of the runs. Comments in
+/// the file give the interval and the source of each value. Some effects are assumed. Their simulated errors are
+/// subtracted before the fit. With all effects of the file, the simulator therefore has the same mean error as the arm.
 ///
 /// Throws Error with a remedy for fewer than 10 contacts, for runs that cannot be simulated, and for a scene that does
 /// not match its config. A scene does not match if more than a fifth of a run's contacts differ by more than 1 cm from

@@ -11,8 +11,8 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 constexpr double kNormal975 = 1.95996398454005423552;
-/// 95 % quantile of chi square with one degree of freedom. Twice the difference from the largest log likelihood is at
-/// most this number within a 95 % interval.
+/// 95 % quantile of chi square with one degree of freedom. A 95 % interval contains the values whose log likelihood is
+/// at most kChiSquare95 / 2 below its maximum.
 constexpr double kChiSquare95 = 3.84145882069412447634;
 
 // metres; without this bound, the likelihood could grow without limit as the noise approaches 0
@@ -77,7 +77,7 @@ class ExpectationMaximisation {
   }
 
  private:
-  /// Returns the median error of the heights, the initial offset of the fit.
+  /// Returns the initial offset of the fit: the median error of the heights.
   double start() const {
     Eigen::VectorXd off = measured_ - heights_.rowwise().mean();
     const auto middle = off.data() + off.size() / 2;
@@ -114,7 +114,7 @@ class ExpectationMaximisation {
     const double squares = ee - 2.0 * now.offset * e - 2.0 * now.drift * te + n * now.offset * now.offset +
                            2.0 * now.offset * now.drift * t + now.drift * now.drift * tt;
     now.noise = std::max(kLeastNoise, std::sqrt(std::max(0.0, squares) / n));
-    // A thousandth of a contact is added to the false contacts, because expectation maximisation never leaves a share
+    // A thousandth of a contact is added to the false contacts, because expectation maximisation cannot change a share
     // of 0.
     now.false_share =
         (static_cast<double>(measured_.size()) - n + 1e-3) / (static_cast<double>(measured_.size()) + 1.0);

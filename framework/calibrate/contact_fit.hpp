@@ -4,8 +4,8 @@
 // A true contact at the requested position p and time t has the measured height h(p + q) + b + d * t + noise, where h
 // is the height of the scene. The lateral error q is normal with equal standard deviations along x and y. A false
 // contact is anywhere on the path of the tool. Expectation maximisation (Dempster, Laird and Rubin 1977) finds the
-// offset b, the drift d, the noise and the share of false contacts. It runs for each lateral standard deviation on a
-// grid. The fit takes the most likely lateral standard deviation, with the interval of the profile likelihood. Only
+// offset b, the drift d, the noise and the share of false contacts. It runs for each value of the lateral standard
+// deviation on a grid. The fit returns the most likely value, with the 95 % interval of its profile likelihood. Only
 // taps near steps of the surface determine the lateral standard deviation.
 #pragma once
 
@@ -45,8 +45,8 @@ struct ContactFit {
 ContactFit fit_contacts(const std::vector<KnownContact>& contacts, double range);
 
 /// Compares the height of a contact, minus `offset`, with all heights of the scene within 1 cm of the contact's
-/// position. Returns the signed distance to the range of these heights in metres: positive above all of them, negative
-/// below all of them, else 0.
+/// position. Returns the signed distance in metres to the range of these heights: positive above all heights, negative
+/// below all heights, else 0.
 double beyond_surface(const KnownContact& contact, double offset);
 
 /// Returns the share `count` / `all` with Wilson's interval (1927). Both numbers may be fractional.

@@ -11,8 +11,8 @@
 namespace palpate::cli {
 
 /// Collects the parts that a command needs. As a PluginSource, this object records each plugin whose options are read.
-/// The functions do not throw, because the command itself reports an invalid config. Plugins that are named in the
-/// options of another plugin become known only after that plugin is built.
+/// The functions do not throw, because the command itself reports an invalid config. If the options of a plugin name
+/// another plugin, the other plugin becomes known only after the first is built.
 class NeededParts final : public PluginSource {
  public:
   explicit NeededParts(CommandEnvironment& program) : program_(program) {}

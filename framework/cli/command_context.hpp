@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Parts that all commands share: exit statuses, the plugins and configs of the program, and delegation: `palpate`
-// passes commands that only `palpate-whole` has to that program.
+// Parts that all commands share: exit statuses, the plugins and configs of the program, and delegation. Delegation
+// means that `palpate` starts `palpate-whole` for commands that only `palpate-whole` has.
 #pragma once
 
 #include "config/compose.hpp"
@@ -35,7 +35,8 @@ Result call_in_whole(Result (*function)(CommandEnvironment&, Parameters...), Com
 }
 
 /// Declares a function that only `palpate-whole` defines. In `palpate`, the linker sets the address of the function to
-/// null. The first run in a clone needs only `palpate`, so it does not wait for the compilation of sweeps and pages.
+/// null. A first run after cloning therefore needs only `palpate`, and does not wait until sweeps and pages are
+/// compiled.
 #define PALPATE_WHOLE [[gnu::weak]]
 
 /// Throws Error if `directory` is a sweep. Commands that read one run call this function. The hint of the error names

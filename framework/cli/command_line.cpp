@@ -17,8 +17,8 @@ namespace {
 constexpr const char* kRecordForms =
     ". Give the directory, a folder that contains the directory, NAME in runs/, or NAME@latest";
 
-/// Returns the error for an invalid command line. The function has its own texts for unknown commands, and for several
-/// records given to a command that takes one (the shell may have expanded a *). All other errors have the text of
+/// Returns the error for an invalid command line. Two errors have special texts: an unknown command, and several
+/// records for a command that takes only one (the shell may have expanded a *). All other errors have the text of
 /// CLI11.
 Error usage_error(const CLI::App& app, const CLI::Error& trouble, const std::string& first) {
   const std::vector<CLI::App*> chosen = app.get_subcommands();

@@ -75,14 +75,14 @@ class Command {
 /// The command line of the program.
 class CommandLine {
  public:
-  /// `is_query`: whether the program performs no command, but only prints completions or the parts that a command
-  /// needs.
+  /// `is_query`: whether the program only prints completions, or the build targets that a command needs, and performs
+  /// no command.
   CommandLine(const Installation& installation, bool is_query);
   ~CommandLine();
 
   /// Adds a command and returns it with its arguments, which live as long as this object. `function` performs the
-  /// command and returns the exit status. It may be null in `palpate` (see PALPATE_WHOLE). `needed` adds the parts of
-  /// the build that the command needs.
+  /// command and returns the exit status. In `palpate`, `function` may be null (see PALPATE_WHOLE). `needed` adds the
+  /// parts of the build that the command needs.
   template <class Arguments>
   std::pair<Command, Arguments&> add(const char* name, const char* help,
                                      int (*function)(CommandEnvironment&, const Arguments&),
@@ -119,8 +119,8 @@ class CommandLine {
 /// commands would take a tenth of the time of a short run.
 void add_commands(CommandLine& line, const std::string& named);
 
-/// Values of `needed` for commands that, whatever their arguments, need palpate-whole, or palpate-whole and all
-/// plugins.
+/// Values of `needed` for commands whose needs do not depend on their arguments. The commands need palpate-whole, or
+/// palpate-whole and all plugins.
 constexpr auto kNeedsWhole = [](NeededParts& needs, const auto&) { needs.whole(); };
 constexpr auto kNeedsEverything = [](NeededParts& needs, const auto&) { needs.everything(); };
 

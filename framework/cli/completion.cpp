@@ -63,7 +63,7 @@ std::vector<Completion> configs(const std::string& typed) {
   return out;
 }
 
-/// Returns the runs in runs/, the sweeps, or (for DIR) both.
+/// Returns the runs in runs/, the sweeps in runs/, or (if `of` is DIR) runs and sweeps.
 std::vector<Completion> records(const std::string& of) {
   std::vector<Completion> out;
   std::error_code none;
@@ -92,9 +92,9 @@ std::vector<Completion> plugins_by_kind(const CommandEnvironment& program, bool 
   return out;
 }
 
-/// Completes the last value of the comma-separated values in `typed`, which begin at index `from`. `values`:
-/// completions for a single value after the first `from` characters. In the results, the text of `typed` up to its last
-/// comma replaces these characters.
+/// Returns completions for the last of the comma-separated values in `typed`; the first value begins at index `from`.
+/// `values`: completions of a word with a single value at index `from`. In the results, the first `from` characters are
+/// replaced by the text of `typed` up to its last comma.
 std::vector<Completion> after_comma(const std::string& typed, std::size_t from, std::vector<Completion> values) {
   const auto comma = typed.rfind(',');
   if (comma == std::string::npos || comma < from) return values;

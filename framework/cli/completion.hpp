@@ -21,8 +21,8 @@ struct Completion {
 };
 
 /// Returns the completions of the last of `words`, the words after `palpate`. The last word may be empty or incomplete.
-/// The function writes no files, and runs and builds nothing. It skips broken configs and plugins, and opens only those
-/// plugins whose options it needs.
+/// The function writes no files, starts no run and builds nothing. It skips broken configs and plugins, and loads a
+/// plugin only if it needs the plugin's options.
 std::vector<Completion> completions(CLI::App& app, CommandEnvironment& program, const std::vector<std::string>& words);
 
 }  // namespace palpate::cli

@@ -110,7 +110,7 @@ std::string displayable(std::string_view text) {
 }
 
 void print_message(const std::string& text) {
-  // If stdout and stderr go to the same file, this call keeps the order of the texts.
+  // If stdout and stderr are the same file, flushing first keeps the order of the texts.
   flush_output();
   std::fputs(displayable(text).c_str(), stderr);
 }

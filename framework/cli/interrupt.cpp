@@ -16,9 +16,9 @@ extern "C" void on_key(int signal) {
   if (interrupted.exchange(true)) std::_Exit(128 + signal);
 }
 
-/// SIGTERM and SIGHUP only set the flag, however often they arrive. A closed terminal sends several of these signals,
-/// and a scheduler signals each process of a job. Such repeated signals must not end the program while a robot's arm is
-/// in the middle of a motion.
+/// SIGTERM and SIGHUP only set the flag, even if they arrive repeatedly. A closed terminal sends several of these
+/// signals, and a scheduler signals each process of a job. Such repeated signals must not end the program while a
+/// robot's arm is in the middle of a motion.
 extern "C" void on_request(int) { interrupted = true; }
 
 bool followed = false;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Reactions to Ctrl-C, SIGTERM and SIGHUP. These signals end the program at once, unless a command must first finish a
-// tap of an arm or stop its jobs.
+// Reactions to Ctrl-C, SIGTERM and SIGHUP. These signals end the program at once. The exception is a command that must
+// first finish a tap of an arm or stop its jobs.
 #pragma once
 
 #include <atomic>
@@ -21,7 +21,7 @@ void follow_parent();
 /// Sets PALPATE_PARENT again for the program that will replace this process, if follow_parent() found the variable.
 void keep_parent();
 
-/// Returns whether the parent process set PALPATE_PARENT. Such a parent reads the progress of the sweep.
+/// Returns whether the parent process set PALPATE_PARENT. If so, the parent reads the progress of the sweep.
 bool is_followed();
 
 }  // namespace palpate::cli

@@ -89,8 +89,8 @@ class Keys {
     return out;
   }
 
-  /// Returns the fields of an option that has its own key next to the key of its plugin, instead of a key in the
-  /// plugin's block (Field::with_beside()).
+  /// Returns the fields of a plugin option whose key is not in the plugin's block but next to the plugin's key
+  /// (Field::with_beside()).
   Descriptions of_option(const FieldDescription& option, const std::string& path) const {
     FieldDescription plugin;
     for (const FieldDescription& one : options_of(option.kind, chosen_plugin(plugin, option.kind))) {

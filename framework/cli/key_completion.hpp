@@ -12,8 +12,8 @@ namespace palpate::cli {
 
 /// Returns the completions of `typed`, the beginning of an override. `config` is the file of the config, and `before`
 /// are the earlier overrides. Keys are completed level by level, like folders: first `kernel.`, then
-/// `kernel.length_scale=`. The options of a plugin are the options of the plugin that the config and the overrides
-/// choose, or of the default plugin if the config is invalid.
+/// `kernel.length_scale=`. The completions contain the options of the plugin that the config and the overrides choose.
+/// If the config is invalid, they contain the options of the default plugin.
 std::vector<Completion> complete_key(CommandEnvironment& program, const std::string& config,
                                      const std::vector<std::string>& before, const std::string& typed);
 

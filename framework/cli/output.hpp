@@ -12,8 +12,8 @@
 namespace palpate::cli {
 
 /// Opens each closed file descriptor among 0, 1 and 2. Otherwise a file of a record could get one of these numbers.
-/// Each is opened in the wrong direction (0 for writing, 1 and 2 for reading), so using it still fails. Call this
-/// function first in main().
+/// Descriptor 0 is opened for writing, and 1 and 2 for reading, so that using them as standard streams still fails.
+/// Call this function first in main().
 void occupy_standard_files();
 
 /// Prints text for people on stdout. Control characters are replaced by printable(), because parts of the text may come
@@ -27,16 +27,17 @@ void print_out(fmt::format_string<Arguments...> format, Arguments&&... arguments
 }
 void flush_output();
 
-/// After this call, the program survives the end of the process that reads stdout, such as `head`. Commands call it if
-/// their record is more important than their output.
+/// After this call, the program continues if the process that reads stdout, such as `head`, ends. Commands call this
+/// function if their record is more important than their output.
 void outlive_reader();
 
-/// Sets a line with the path of the record, which finish_output() prints if output was lost.
+/// Sets a line with the path of the record. finish_output() prints the line if a write to stdout failed.
 void set_record_line(std::string line);
 
 /// Flushes stdout and checks that all output was written. Returns `status`, or 1 if `status` is 0 and output was lost.
-/// Output after the end of the reader of stdout does not count as lost. After outlive_reader(), the line of
-/// set_record_line() is then printed on stderr. Without outlive_reader(), SIGPIPE has already ended the process.
+/// If the process that reads stdout has ended, its missing output does not count as lost. In this case, the line of
+/// set_record_line() is printed on stderr. This requires outlive_reader(); without it, SIGPIPE would already have ended
+/// this process.
 int finish_output(int status);
 
 }  // namespace palpate::cli

@@ -74,8 +74,8 @@ Error axis_error(const std::vector<Override>& overrides, const std::vector<std::
   return trouble;
 }
 
-/// Prints the models that the choice of taps needs, each with the readers that need it. Each line begins with `mark`.
-/// Throws Error for a config that cannot be run.
+/// Prints the models that the run needs for the choice of taps, each with the parts of the run that read it. Each line
+/// begins with `mark`. Throws Error for a config that cannot be run.
 void print_models(const CommandEnvironment& program, const ResolvedConfig& config, const char* mark) {
   std::map<std::string, std::string> models;
   for (const PlannedModel& one : models_of(program, config)) {

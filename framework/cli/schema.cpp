@@ -37,7 +37,7 @@ Tree any_of(std::vector<Tree> schemas) { return Tree::map({{"anyOf", Tree::list(
 
 /// Returns the schema of a plugin kind. A value is either the name of a plugin, or the options of one of the plugins.
 /// The type is not required, because a group in `defaults` may set it. The options in `beside` are left out, because
-/// they have their own keys next to the key of the plugin (Field::with_beside()).
+/// their keys are next to the key of the plugin (Field::with_beside()).
 Tree kind_schema(const PluginHost& host, const std::string& kind, const std::set<std::string>& beside) {
   std::vector<Tree> any{of_type("string")};
   any.front().at("description") = Tree::quote("name of a group file or of a plugin");
@@ -52,7 +52,7 @@ Tree kind_schema(const PluginHost& host, const std::string& kind, const std::set
   return any_of(std::move(any));
 }
 
-/// Returns the schema of an option with its own key next to the key of its plugin (Field::with_beside()). A value is
+/// Returns the schema of a plugin option whose key is next to the key of the plugin (Field::with_beside()). A value is
 /// either the name of a group file, or the options of one of the plugins.
 Tree beside_schema(const PluginHost& host, const std::string& kind, const std::string& option) {
   std::vector<Tree> any{of_type("string")};

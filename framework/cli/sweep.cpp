@@ -52,8 +52,8 @@ std::vector<std::size_t> jobs_of(const SweepExecution& execution) {
   return execution.only.empty() ? all_jobs(execution.sweep) : execution.only;
 }
 
-/// Finishes the output of a process that ran only a part of the sweep, such as a task of a cluster. The process that
-/// submitted the tasks prints the results of the whole sweep.
+/// Prints the last messages of a process that ran only a part of the sweep, such as a task of a cluster. The process
+/// that submitted the tasks prints the results of the whole sweep.
 int finish_part(const Sweep& sweep, const JobStates& end, bool interrupted, bool all_recorded) {
   const bool complete = std::all_of(sweep.jobs.begin(), sweep.jobs.end(),
                                     [&](const Job& job) { return has_ended(job_directory(sweep, job)); });
@@ -77,8 +77,8 @@ std::optional<ResolvedConfig> readable_config(const SweepExecution& execution, s
 /// recorded. `blocked`: a job could not begin, for a reason that applies to all jobs and was printed on stderr.
 enum class LaunchOutcome { submitted, ended, ended_unrecorded, blocked };
 
-/// Returns the maximum number of initial taps of a job; nullopt if the number depends on a camera's view. All taps of a
-/// run may be initial taps if the run begins with a search or taps from any side. `result`: the job's row of
+/// Returns the maximum number of initial taps of a job; nullopt if the number depends on a camera's view. If the run
+/// begins with a search or taps from any side, all its taps may be initial taps. `result`: the job's row of
 /// results.csv.
 std::optional<int> initial_taps_of(const ExperimentOptions& options, const Row& result) {
   if (!belief_option(options, "view").empty()) return std::nullopt;

@@ -17,7 +17,7 @@ namespace palpate::cli {
 
 /// Prints the progress of a sweep on stderr: numbers of done, running and failed jobs, rate, and remaining time. On a
 /// terminal, one line is updated in place. Elsewhere, a line is printed per tenth of the jobs. At the end, another line
-/// follows if the previous line shows running jobs. If is_followed() is true, each update is a separate line.
+/// is printed if the last printed line shows running jobs. If is_followed() is true, each update is a separate line.
 class SweepLine {
  public:
   explicit SweepLine(bool quiet);

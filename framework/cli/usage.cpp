@@ -43,7 +43,7 @@ std::string head_of(const CLI::Option& option) {
   const std::string value = value_of(option);
   if (option.get_positional()) {
     // The name of a positional argument is usually the name of its value. If the value has a form such as KEY=VALUE,
-    // both are shown.
+    // the text contains the name and the form.
     if (value.find_first_of("=/") == std::string::npos) return option.get_name();
     return fmt::format("{} {}{}", option.get_name(), value, option.get_items_expected_max() > 1 ? " ..." : "");
   }
@@ -89,8 +89,8 @@ std::string entry(const std::string& term, const std::string& meaning) {
   return out + fmt::format("{}\n", fmt::join(wrapped(meaning, kWidth - kColumn), "\n" + std::string(kColumn, ' ')));
 }
 
-/// Escapes a text for roff. Hyphens then remain plain hyphens, which readers can search and copy, and roff interprets
-/// no line as a request.
+/// Escapes a text for roff. In the escaped text, hyphens remain plain hyphens, which users can search and copy, and
+/// roff interprets no line as a request.
 std::string roff(std::string text) {
   boost::replace_all(text, "\\", "\\e");
   boost::replace_all(text, "-", "\\-");

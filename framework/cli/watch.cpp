@@ -14,9 +14,9 @@ namespace palpate::cli {
 
 int watch(CommandEnvironment& program, const WatchArguments& arguments) {
   constexpr int kIdleSeconds = 120;
-  // This process computes the watched run a second time, so the run itself has priority. The page of a sweep needs
-  // little computing time. It has a higher priority than the page of a run, because the jobs of the sweep occupy all
-  // cores.
+  // This process computes the watched run a second time, so it gets a lower priority than the run. The page of a sweep
+  // needs little computing time. Its priority is higher than that of a run's page, because the jobs of the sweep occupy
+  // all cores.
   ::setpriority(PRIO_PROCESS, 0, is_sweep(arguments.directory) ? 10 : 19);
   Site site(program, arguments.directory);
   Server server(site, {arguments.bind, arguments.port, arguments.until_left ? kIdleSeconds : 0});

@@ -40,8 +40,8 @@ void start_watcher(const palpate::cli::CommandEnvironment& program, const std::f
   std::optional<Pipe> pipe = open_pipe();
   const Descriptor nothing = above_standard(::open("/dev/null", O_RDONLY | O_CLOEXEC));
   palpate::ProgramCall watch{{whole, "watch", directory.string(), "--until-left"}, whole};
-  // The watcher must not inherit open files. Otherwise a process that reads the output of this program until its end
-  // would also wait for the end of the watcher.
+  // The watcher must not inherit open files. Otherwise a process that reads all output of this program would also wait
+  // until the watcher ends.
   const bool started =
       pipe && nothing && spawn(watch, {nothing.number(), pipe->to_write.number(), pipe->to_write.number()}) > 0;
   if (!started) said = fmt::format("{}: {}", whole, errno == ENOENT ? "is not built" : std::strerror(errno));

@@ -19,8 +19,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Number of layers of a group. The group's own content is on the highest layer, and the groups on which it builds are
-/// on lower layers.
+/// Number of layers of a group. The content of the group's own file is on the highest of these layers. The groups on
+/// which it builds are on the lower ones.
 constexpr Layer kLayersOfGroup = 16;
 
 [[noreturn]] void refuse_depth(const SourceLocation& place) {
@@ -72,7 +72,8 @@ void set_layer_of_type(Tree& content, Layer layer, const SourceLocation& place) 
   }
 }
 
-/// Completes groups that inherit from another key (Field::inherits()). So a config needs to set only the differences.
+/// Completes groups that inherit from another key (Field::inherits()), so that a config needs to set only the
+/// differences.
 void inherit_shared(Tree& tree, const ConfigKeys& keys) {
   for (const auto& [heir, from] : keys.heirs()) {
     const Tree* own = tree.find_path(heir);
@@ -193,7 +194,8 @@ Tree Composer::base_content(const std::string& group, const Tree& name, const fs
   const std::array<std::string, 3> key{group, name.text, beside.string()};
   if (const auto known = bases_.find(key); known != bases_.end()) return known->second;
   Tree content = group_content(group, name.text, name.place, beside, chain);
-  // A plugin without a file is not cached, because its source location is that of its name, which differs between uses.
+  // A plugin without a file is not cached: its source location is the place where it is named, which differs between
+  // uses.
   if (!group_files_.find(group, name.text, name.place, beside).empty()) bases_.emplace(key, content);
   return content;
 }
@@ -255,9 +257,9 @@ Tree Composer::take_group(const Choice& choice, const fs::path& beside, Layer la
 }
 
 void Composer::lay_groups(Tree& tree, const std::vector<Choice>& choices, const fs::path& beside, Layer& layer) {
-  // A group file may also set options of the sibling key: a backend file may set options of `motion`. These options are
-  // ignored if an override chooses the sibling key, or if the config that chooses the group also chooses the sibling
-  // key.
+  // A group file may also set options of the group's sibling key; for example, a backend file may set options of
+  // `motion`. These options are ignored if an override chooses the sibling key. They are also ignored if the config
+  // that chooses the group chooses the sibling key, too.
   const auto is_chosen = [&](const std::string& key, Layer since) {
     return std::any_of(choices.begin(), choices.end(), [&](const Choice& one) {
       return one.path == key && (one.value.layer >= kSweepLayer || since < kSweepLayer);
@@ -279,8 +281,8 @@ void Composer::lay_groups(Tree& tree, const std::vector<Choice>& choices, const 
     if (slot.place.line == 0) slot.place = content.place;
     slot.merge(content);
   };
-  // A part of a group (scene.effects) is merged after all whole groups (scene), because the part replaces their content
-  // at its path.
+  // A part of a group (scene.effects) is merged after all whole groups (scene), because the part replaces the content
+  // of the whole group at the path of the part.
   for (const bool parts : {false, true}) {
     for (const Choice& choice : choices) {
       if (keys_.is_part(choice.path) == parts) lay(choice);

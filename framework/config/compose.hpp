@@ -18,11 +18,12 @@
 namespace palpate {
 
 /// Version of the format of records, stored as `complete` in their config.yaml. New keys, fields and files do not
-/// change the version; a new meaning of an existing one increments it. palpate reads all versions from 1 to this one.
+/// change the version. A new meaning of an existing key, field or file increments it. palpate reads all versions from 1
+/// to kRecordVersion.
 inline constexpr std::int64_t kRecordVersion = 1;
 
-/// If a config has the key `complete`, sets Tree::complete in all maps of the config: a missing option then does not
-/// have its default value. Throws Error for a version above kRecordVersion.
+/// If a config has the key `complete`, sets Tree::complete in all maps of the config. In these maps, a missing option
+/// does not have its default value (see resolve()). Throws Error for a version above kRecordVersion.
 void mark_complete(Tree& config);
 
 /// Composes configs. Each file is read only once.
@@ -30,17 +31,18 @@ void mark_complete(Tree& config);
 /// The field list of the config defines which keys are groups (Field::group()). If the value of a group key is a name,
 /// in the file or in an override, the name chooses a file: see GroupFiles. A name without a file is the type of a
 /// plugin, which then has its default options. A group within another group, such as scene.effects in scene, replaces
-/// the content of the outer group at its path.
+/// the outer group's content at the path of the inner group.
 ///
 /// The group `strategy` is not an option. Its file is a whole config, in strategy/ or in the folder of the config
-/// itself. So each whole config can also be used as a strategy. A strategy may set all keys that decide the choice of
+/// itself. Each whole config can therefore be used as a strategy. A strategy may set all keys that decide the choice of
 /// taps and the models (Field::of_strategy()). If the config names a strategy, the groups of the config take precedence
-/// over the strategy. If an override names a strategy, the strategy replaces each top-level key that it sets. If its
-/// belief has the same type as the belief of the config, it replaces only those options of the belief that it sets.
+/// over the strategy. If an override names a strategy, the strategy replaces each top-level key that it sets. The
+/// belief is an exception: if strategy and config have the same belief type, only the belief options that the strategy
+/// sets are replaced.
 ///
 /// The file of a strategy may contain keys of the run (Field::of_run()), but they are ignored. The only exception is a
 /// motion that is given as a map (`motion: {...}`), not as a name. This motion is used only if neither another group
-/// nor the config sets any part of the motion. So a strategy cannot make an arm faster than the config allows.
+/// nor the config sets any part of the motion. A strategy therefore cannot make an arm faster than the config allows.
 class Composer {
  public:
   /// `shipped`: folder of the program's own configs. `keys` must outlive the object.
@@ -71,8 +73,8 @@ class Composer {
   std::vector<std::string> names_of(const std::string& group) const;
 
  private:
-  /// A chosen group: `path` is the path of the group, `value` the name of the chosen file or plugin. The type of the
-  /// group gets the layer of this name.
+  /// A chosen group: `path` is the path of the group, `value` the name of the chosen file or plugin. The group's key
+  /// `type` gets the layer of this name.
   using Choice = Override;
 
   const Tree& load(const std::filesystem::path& file);

@@ -185,7 +185,7 @@ Tree section_schema(const FieldDescription& field) {
   return Tree::map({{"anyOf", Tree::list({field.group ? name : none, std::move(group)})}});
 }
 
-/// Returns a schema that accepts a range such as `uniform(3 cm, 8 cm)` in place of any number of `schema`.
+/// Returns a copy of `schema` in which each number may also be a range such as `uniform(3 cm, 8 cm)`.
 Tree or_drawn(Tree schema) {
   const Tree* type = schema.find("type");
   if (schema.find("pattern") != nullptr || (type != nullptr && (type->text == "number" || type->text == "integer"))) {

@@ -27,7 +27,7 @@ struct FieldDescription {
   bool required = false;
   bool optional = false;  ///< whether a `section` is absent by default
   bool group = false;     ///< see Field::group()
-  bool adopted = false;   ///< whether unknown options of a plugin follow the field: see Fields::adopt()
+  bool adopted = false;   ///< whether the chosen plugin's options follow among the same keys: see Fields::adopt()
   bool drawable = false;  ///< see Field::drawable()
   std::string heir_of;    ///< see Field::inherits(); "": none
   Owner owner = Owner::unsaid;

@@ -5,8 +5,8 @@
 //
 // Units: positions, heights and their standard deviations are in centimetres, errors in millimetres, times in seconds,
 // and all other quantities in SI units. A column or axis has one unit. The unit changes only if the largest number
-// would have too many digits before the point or too many zeros after it. A single length in a sentence has the unit
-// with which the number is short.
+// would have too many digits before the point or too many zeros after it. For a single length in a sentence, the unit
+// is chosen so that the number is short.
 //
 // Digits: a column has as many decimals as its smallest number needs for three significant digits, at most four. A
 // number that would be shown as 0 gets two significant digits. Numbers below a nanometre or a nanosecond are 0.
@@ -26,10 +26,10 @@ enum class LengthKind { error, place };
 /// Unit and number of decimals for the numbers of a column, axis or sentence.
 struct DisplayScale {
   std::string unit;     ///< "": none
-  double factor = 1.0;  ///< SI units per `unit`
+  double factor = 1.0;  ///< one `unit` in SI units, for example 0.001 for mm
   int decimals = 0;
   bool scientific = false;  ///< true for numbers without a unit that are too small or too large for decimals
-  /// Whether the values are unknown when the scale is made; each value then has at least two significant digits.
+  /// Whether the scale is made before its values are known. If so, each value has at least two significant digits.
   bool open = false;
 
   /// Formats `value` (in SI units) without its unit, for example "3.21"; "nan" or "inf" for values that are not finite.

@@ -92,7 +92,7 @@ std::vector<Tree> expand_logspace(const std::vector<Bound>& from, const Tree& tr
   std::vector<Tree> out;
   for (int i = 0; i < static_cast<int>(count); ++i) {
     const double share = i / (count - 1.0);
-    // The ends are exactly as written. Rounding between them does not matter.
+    // The first and the last value are exactly as written. Rounding errors of the values between them do not matter.
     const double value = i == 0 ? first : share == 1.0 ? last : first * math::pow(last / first, share);
     out.push_back(number(value, from[0].unit, tree));
   }

@@ -43,7 +43,7 @@ struct ContinuousRange {
   double last = 1.0;
   std::string unit;  ///< "": none
 
-  /// Returns the number at the share `share` of the range: 0 is the first end, 1 the last.
+  /// Returns the number at position `share` of the range: the first end for 0, the last end for 1.
   double at(double share) const;
 };
 

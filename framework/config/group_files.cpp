@@ -20,7 +20,7 @@ std::vector<fs::path> folders_of(const std::string& group) {
 }
 
 /// Returns the first file of a group, or "" if there is none. Throws Error if the permissions of a folder forbid the
-/// search. A later folder is not used then, because it might have another file of the same name.
+/// search. In this case, later folders are not searched, because they might have another file of the same name.
 fs::path find_in(const std::vector<fs::path>& roots, const std::string& group, const std::string& name) {
   for (const fs::path& folder : folders_of(group)) {
     for (const fs::path& root : roots) {
@@ -50,8 +50,8 @@ bool gives(const fs::path& folder, fs::perms rights) {
 bool others_may_write(const fs::path& folder) { return gives(folder, fs::perms::others_write); }
 
 /// Returns whether all users may put files into a folder, but may not change the files of others (sticky bit), as in
-/// /tmp. Folders that are writable for all without the sticky bit are accepted: others could replace the config itself
-/// there, so groups add no danger, and some mounted disks have only such folders.
+/// /tmp. Folders that all users may write without the sticky bit are accepted. There, others could replace the config
+/// itself, so reading group files adds no risk. Some mounted disks have only such folders.
 bool is_common(const fs::path& folder) { return gives(folder, fs::perms::others_write | fs::perms::sticky_bit); }
 
 }  // namespace

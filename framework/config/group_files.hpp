@@ -17,9 +17,9 @@ namespace palpate {
 /// Finds the file <folder>/<group>/<name>.yaml of a group. It searches the folder of the config, the nearest folder
 /// named `configs` above it, ./configs, and the configs of the program. The first file found is used.
 ///
-/// A group may name a program that a run starts, so other users must not be able to supply the file. A file is rejected
-/// if all users may put files into its folder, as into /tmp (sticky bit). In ./configs, a file is also rejected if
-/// others may write there.
+/// A group file may name a program that a run starts, so other users must not be able to supply a group file. A file is
+/// rejected if all users may put files into its folder, as into /tmp (sticky bit). In ./configs, a file is also
+/// rejected if others may write there.
 class GroupFiles {
  public:
   /// `shipped`: the configs of the program. The folder need not exist.
@@ -40,7 +40,7 @@ class GroupFiles {
                 const std::filesystem::path& beside) const;
 
   /// Returns `file`. If `file` is a relative name configs/... that does not exist, returns the program's own config of
-  /// this name instead. So an installed program finds its configs from every working folder.
+  /// this name instead. An installed program therefore finds its configs from every working folder.
   std::filesystem::path config(const std::filesystem::path& file) const;
 
   /// Returns the folder that contains the group folder of `file`. The search for groups on which the group of `file`

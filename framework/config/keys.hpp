@@ -22,8 +22,8 @@ class ConfigKeys {
   /// `list` visits all top-level keys. Throws std::logic_error for a key whose owner (strategy or run) is not set.
   explicit ConfigKeys(const std::function<void(Fields&)>& list);
 
-  /// Returns whether a name at a dotted path chooses a file. This holds for the paths of groups. It also holds for a
-  /// plugin within another plugin if its key is the name of a plugin kind with group files.
+  /// Returns whether a name at a dotted path chooses a file. This is true for the paths of groups. It is also true for
+  /// a plugin within another plugin if the key of the inner plugin is the name of a plugin kind with group files.
   bool is_group(const std::string& path) const;
   /// Returns whether a name at `path` that has no file is the type of a plugin. `path`: the path of a group, or its
   /// last key.
@@ -40,14 +40,14 @@ class ConfigKeys {
 
   /// Returns whether a strategy may set the value at a dotted path. Unknown paths are accepted here and rejected later.
   bool is_of_strategy(const std::string& path) const;
-  /// Returns whether a strategy's value of a top-level key is used only if the config does not set the key. This holds
-  /// for the sibling key of a plugin (Field::with_beside()).
+  /// Returns whether a strategy's value of a top-level key is used only if the config does not set the key. This is
+  /// true for the sibling key of a plugin (Field::with_beside()).
   bool is_brought(const std::string& key) const;
   /// Returns the sibling key of a plugin, which contains further options of this plugin: for example `motion` for
   /// `backend`; "" if there is none.
   std::string beside(const std::string& path) const;
-  /// Returns whether the group at `choice` decides the value at a dotted path. This holds if the path is within the
-  /// group or within its sibling key.
+  /// Returns whether the group at `choice` decides the value at a dotted path: the path is within the group or within
+  /// its sibling key.
   bool is_decided(const std::string& path, const std::string& choice) const;
 
   /// Returns pairs of paths. The first path of a pair inherits from the second.

@@ -146,7 +146,8 @@ const Tree* MapReader::claim_list(const Field& field) {
 const Tree* MapReader::neutral(const Field& field, bool may_be_absent) {
   const FixedValue& value = field.neutral_value;
   const bool is_absent = value.kind == FixedValue::Kind::none;
-  if (is_absent && !may_be_absent && !enters(field)) return nullptr;  // the value does not matter
+  // the default applies, because the field is not part of the id
+  if (is_absent && !may_be_absent && !enters(field)) return nullptr;
   if (is_absent && !may_be_absent) {
     miss(field.name, {where(), fmt::format("'{}' is missing", name(field)),
                       "a config with 'complete' needs every option: restore it, or remove 'complete'"});

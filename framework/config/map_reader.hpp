@@ -57,8 +57,8 @@ class MapReader : public Fields {
   /// is none.
   const Tree* find(const Field& field);
 
-  /// What happens if a record lacks a field without a neutral value: it is an error, the field is absent, or its nested
-  /// fields are read one by one.
+  /// Meaning of a field that a record lacks and that has no neutral value: an error, an absent field, or a group whose
+  /// nested fields are read one by one.
   enum class MissingFieldMeaning { refused, absent, of_its_parts };
   /// Marks a field as known and returns its value; null if the config does not set it. In a record, a missing field has
   /// its neutral value: see resolve().
@@ -113,7 +113,7 @@ class MapReader : public Fields {
  private:
   bool is_known(const std::string& key) const;
   /// Returns the neutral value of an option, which applies in records that are older than the option. Returns null if
-  /// the option keeps its default.
+  /// the default of the option applies instead.
   const Tree* neutral(const Field& field, bool may_be_absent);
   double checked(double value, const Tree& tree, const Field& field) const;
   /// Returns the path of an option called `key` in a nested group; "" if there is none.

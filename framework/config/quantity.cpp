@@ -203,7 +203,7 @@ std::optional<AnyQuantity> any_quantity(const std::string& text) {
     unit = known->unit;
   }
   std::optional<AnyQuantity> out;
-  // A value such as 1e999 m is not an error here; it is not a quantity.
+  // A value such as 1e999 m is not an error here; the function returns nullopt.
   catch_error([&] { out = AnyQuantity{read_quantity(Tree::scalar(text), "", unit), unit}; });
   return out;
 }

@@ -16,8 +16,8 @@ std::string_view sign_of(Relation relation);
 /// Returns the relation that an operator stands for; nullopt for any other text.
 std::optional<Relation> relation_of(std::string_view sign);
 
-/// Returns whether `value` exists, is finite, and is in the given relation to `bound`. Both have the same unit. A
-/// missing, infinite or NaN value satisfies no relation, not even `unequal`.
+/// Returns whether `value` exists, is finite, and is in the given relation to `bound`. `value` and `bound` must have
+/// the same unit. A missing, infinite or NaN value satisfies no relation, not even `unequal`.
 bool satisfies(const std::optional<double>& value, Relation relation, double bound);
 
 }  // namespace palpate

@@ -218,7 +218,7 @@ class Resolver final : public MapReader {
     write(field, choice.type);
     adopted_ = choice.kind + "/" + choice.type;
     Tree options = Tree::map();
-    options.place = type.place;  // place of the plugin's own errors
+    options.place = type.place;  // location for the plugin's own errors
     std::swap(output_.place, options.place);
     const std::size_t before = output_.entries.size();
     list_plugin(choice, type.place.text(), *this);
@@ -253,7 +253,7 @@ class Resolver final : public MapReader {
                 fmt::format("'palpate plugins {}' lists the types", kind));
   }
 
-  /// Lists the options of a plugin to `fields`. Errors about the plugin's library get the source location `place`.
+  /// Passes the options of a plugin to `fields`. Errors about the plugin's library get the source location `place`.
   void list_plugin(const PluginChoice& choice, const std::string& place, Resolver& fields) {
     notes_.plugins.emplace(choice.kind, choice.type);
     fields.silent_ = plugins_.is_silent(choice.kind, choice.type);

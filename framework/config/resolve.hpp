@@ -21,8 +21,8 @@ namespace palpate {
 class PluginSource {
  public:
   virtual ~PluginSource() = default;
-  /// Lists the options of a plugin to `fields`. Throws Error, without a place, if the plugin does not exist or cannot
-  /// be loaded.
+  /// Passes the options of a plugin to `fields`. Throws Error, without a source location, if the plugin does not exist
+  /// or cannot be loaded.
   virtual void describe(const std::string& kind, const std::string& name, Fields& fields) const = 0;
   /// Returns whether the options of a plugin are unknown, because the plugin is not built yet. resolve() then accepts
   /// any options.
@@ -40,7 +40,7 @@ struct ResolveNotes {
   };
   std::vector<Origin> origins;  ///< origin of each value, in the order of the resolved config
   std::vector<Origin> dropped;  ///< options that were set for a type that was replaced, and that the final type lacks
-  PluginNames plugins;          ///< all plugins of the config
+  PluginNames plugins;          ///< kind and name of all plugins of the config
   /// One line `path=value` for each value that affects the results of a run, in the order of the fields: see
   /// identity_text().
   std::vector<std::string> identity;

@@ -86,7 +86,7 @@ struct Tree {
   void shift_layer(int steps);
 
   /// Merges `upper` into this tree. Maps are merged key by key; any other value is replaced if the layer of `upper` is
-  /// not lower. A key has the source location of the source with the highest layer.
+  /// not lower. A key that both trees have gets the source location from the tree with the higher layer.
   void merge(const Tree& upper);
 
   /// Returns one line of text that is the same for equal values, even if their source locations differ.
@@ -127,7 +127,7 @@ inline constexpr const char* kNameHint = "a name has letters, digits, '_' and '-
 std::string nearest(std::string_view name, const std::vector<std::string>& known);
 
 /// Returns the hint "did you mean 'x'?" with the most similar name, or else with the shortest name that contains
-/// `name`. Without such a name, returns "known: a, b, c", or "" if `known` is empty.
+/// `name`. If no name is similar or contains `name`, returns "known: a, b, c", or "" if `known` is empty.
 std::string suggestion(std::string_view name, const std::vector<std::string>& known);
 
 }  // namespace palpate

@@ -159,7 +159,8 @@ class YamlReader final : public YAML::EventHandler {
     return nullptr;
   }
 
-  /// Counts a value at this depth. The content of an alias is a value with nested values, which are counted, too.
+  /// Counts a value at nesting depth `depth`, and all values within it, because an alias inserts a value with its
+  /// nested values.
   void count(const Tree& value, std::size_t depth) {
     if (++values_ > kMaxValues)
       refuse(value.place, "too many values", "use fewer aliases: they expand to more than 100000 values");
@@ -200,7 +201,7 @@ class YamlReader final : public YAML::EventHandler {
   std::optional<Error> refused_;
 };
 
-/// Returns a hint with the config in the same folder whose name is most similar to that of `missing`.
+/// Returns a hint with the config in the folder of `missing` whose name is most similar to the name of `missing`.
 std::string similar_file(const std::filesystem::path& missing) {
   std::vector<std::string> names;
   const std::filesystem::path folder = missing.has_parent_path() ? missing.parent_path() : ".";

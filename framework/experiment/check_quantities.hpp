@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Checks of the quantities that the readers of a run read.
+// Checks that the belief offers all quantities that the parts of a run read.
 #pragma once
 
 #include <palpate/belief.hpp>

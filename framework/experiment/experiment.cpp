@@ -92,7 +92,7 @@ std::optional<TapRecord> Experiment::choose_next(const TapOverride* override) {
 
 void Experiment::end(TapRecord& tap, Observer& observer) {
   tap.reading = belief_->read(tap.request, tap.result);
-  // The tap is recorded before any model receives it. So a tap that was made is not lost if a plugin fails.
+  // The tap is recorded before any model receives it. So the record of the tap is not lost if a plugin fails.
   observer.record(tap, clock_.take());
   take_in(tap);
   check_backend(tap);
@@ -238,7 +238,7 @@ void Experiment::check_backend(const TapRecord& tap) {
     throw Error("backend/" + options_.backend.type, reason, hint, Error::Kind::run);
   };
   if (last.ends_run) fail(last.reason.empty() ? "cannot continue and gives no reason" : last.reason);
-  // One impossible result may be a glitch. This many in a row mean that the backend is faulty.
+  // One impossible result may be a glitch. This many impossible results in a row mean that the backend is faulty.
   constexpr int kMostRefused = 10;
   refused_in_a_row_ = is_refused(last) ? refused_in_a_row_ + 1 : 0;
   if (refused_in_a_row_ == kMostRefused) {

@@ -27,13 +27,14 @@ struct ExperimentSetup {
   const std::atomic<bool>* interrupted = nullptr;  ///< set when the user asks to stop; may be null
   std::shared_ptr<Backend> backend = nullptr;      ///< replaces the backend of the config; null for none
   std::string directory = {};                      ///< folder of the record; "" without a record
-  /// Readers in addition to those of the config: displays and pages, which read a replay of the run, and a calling
-  /// program. If `readers.surface_from` is set, it replaces the stage `summary` as the stage from which on the surface
-  /// is read.
+  /// Further readers (parts that read the belief) in addition to the readers of the config: displays, pages and a
+  /// calling program. Displays and pages read a replay of the run. If `readers.surface_from` is set, it replaces the
+  /// stage `summary` as the stage from which on the surface is read.
   ReadPlan readers = {{}, std::nullopt};
 };
 
-/// The readers of a run, and pairs of a model that is built and a reader that needs it.
+/// The readers of a run (acquisition, stop rules and outputs, which read the belief), and the models to build, each
+/// with a reader that needs it.
 struct ModelPlan {
   ReadPlan read;
   std::vector<PlannedModel> models;
@@ -51,16 +52,16 @@ class Experiment final {
   /// the last tap is then already recorded.
   void run(Observer& observer, int most_taps = std::numeric_limits<int>::max());
 
-  /// Chooses the next tap, asks `observer` for permission, and announces the tap. Returns nullopt if the run ends here;
-  /// counts() then contains the reason.
+  /// Chooses the next tap, asks `observer` for permission, and announces the tap. Returns nullopt if the run ends
+  /// before this tap; counts() then contains the reason.
   std::optional<TapRecord> begin(Observer& observer, int most_taps = std::numeric_limits<int>::max(),
                                  const TapOverride* override = nullptr);
 
   /// Reads and records the result of the tap that begin() chose, and adds it to the belief. Throws Error as run() does.
   void end(TapRecord& tap, Observer& observer);
 
-  /// Returns the reason why the run stops here; nullopt if it continues. Updates the models, unless the counts alone
-  /// give the reason.
+  /// Returns the reason why the run stops before the next tap; nullopt if it continues. Updates the models, unless the
+  /// counts alone give the reason.
   std::optional<std::string> reason_to_stop(int most_taps = std::numeric_limits<int>::max(),
                                             const TapOverride* override = nullptr);
 
@@ -71,7 +72,8 @@ class Experiment final {
   /// Adds a tap that was made to the belief and to the counts. The models are updated only when the next tap is chosen.
   void take_in(const TapRecord& tap);
 
-  /// Adds the taps of an earlier process, in their order. Stages begin and models are updated as in that process.
+  /// Adds the taps that an earlier process made, in their order. Stages begin and models are updated as in the earlier
+  /// process.
   void resume(const std::vector<TapRecord>& taps);
 
   /// Begins the stage `first_tap` and computes the arrays of all begun stages, for displays and exports that make no
@@ -91,7 +93,7 @@ class Experiment final {
   /// Returns a preview of a tap that choose_next() chose: the predicted height and the backend's description. Builds no
   /// model.
   Preview preview(const TapRecord& tap) const;
-  /// Returns the readers of the run, and the models that they need.
+  /// Returns the parts of the run that read the belief, and the models that these parts need.
   const ModelPlan& plan() const { return plan_; }
 
   Belief& belief() { return *belief_; }
@@ -133,7 +135,8 @@ class Experiment final {
   RunMonitor monitor_;
   std::optional<TapLine> previous_;  ///< line of the previous tap
   std::string unreached_;            ///< drawn lines that the backend rejected; see TapRecord::unreached
-  int failed_in_a_row_ = 0;   ///< only of this process, because a person has checked the arm before a run is resumed
+  /// counts only taps of this process, because a person checks the arm before a run is resumed
+  int failed_in_a_row_ = 0;
   int refused_in_a_row_ = 0;  ///< taps with an impossible result: see is_refused()
 };
 

@@ -24,7 +24,7 @@ struct InitialOptions : Options {
   void list(Fields& fields) override;
 };
 
-/// If both options are absent, the belief uses its own default. At most one of both may be set.
+/// If both options are absent, the belief uses its own default. At most one of the two options may be set.
 struct CandidateOptions : Options {
   std::optional<std::int64_t> count;
   std::optional<double> spacing;
@@ -77,7 +77,7 @@ struct ExperimentOptions : Options {
   void list(Fields& fields) override;
 };
 
-/// Returns the options that a belief needs in addition to its own.
+/// Returns the options of the run that a belief needs in addition to its own options.
 RunSettings run_settings(const ExperimentOptions& options);
 
 /// Returns an option of the belief by its dotted path, as in the resolved config: the text of a value, "{}" for a
@@ -90,7 +90,7 @@ std::string motion_name(const ExperimentOptions& options);
 /// Returns the top-level keys of a config that are not among ExperimentOptions, with their descriptions.
 std::vector<Field> keys_beside_options();
 
-/// Returns the properties of all config keys that the composition of configs needs.
+/// Returns the properties of all config keys. The composition of configs needs these properties.
 class ConfigKeys;
 const ConfigKeys& config_keys();
 

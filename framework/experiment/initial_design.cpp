@@ -33,8 +33,8 @@ void take(std::vector<int>& design, const CandidateGrid& candidates, double x, d
 }
 
 std::vector<int> draw_sobol(std::size_t count, const CandidateGrid& candidates, const Area& area, Random& random) {
-  // A digital shift (Owen 2003) XORs one random bit pattern per axis with every point. Unlike a shift modulo 1, it
-  // keeps the even spread over halves, quarters, ..., and it still depends on the seed.
+  // A digital shift (Owen 2003) XORs one random bit pattern per axis with every point. Unlike a shift modulo 1, a
+  // digital shift keeps the even spread of the points over halves, quarters, .... The bit patterns depend on the seed.
   const std::array<std::uint64_t, 2> shift{random.bits(), random.bits()};
   boost::random::sobol sequence(2);
   const auto coordinate = [](std::uint64_t bits) { return static_cast<double>(bits >> 11) * 0x1.0p-53; };

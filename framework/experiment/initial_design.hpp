@@ -10,9 +10,9 @@
 
 namespace palpate {
 
-/// Returns the candidates of the first taps, all different, for a design with a fixed count. The result depends only on
-/// the design, the candidates and the seed, so strategies with equal seeds begin with the same taps. There must be at
-/// least as many candidates as initial taps.
+/// Returns the indices of the candidates of the first taps for a design with a fixed count. All indices are different.
+/// The result depends only on the design, the candidates and the seed, so strategies with equal seeds begin with the
+/// same taps. There must be at least as many candidates as initial taps.
 std::vector<int> initial_design(const InitialOptions& options, const CandidateGrid& candidates, const Area& area,
                                 std::uint64_t seed);
 

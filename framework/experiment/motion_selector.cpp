@@ -13,8 +13,8 @@
 namespace palpate {
 namespace {
 
-/// Weight of a motion's expected values, as a number of taps (kPriorTaps), and the expected share of taps that make
-/// contact.
+/// Prior of a motion's statistics. kPriorTaps: weight of the expected values, as a number of taps; kPriorContacts:
+/// expected share of taps that make contact.
 constexpr double kPriorTaps = 5.0;
 constexpr double kPriorContacts = 0.95;
 /// Largest difference, metres, between the desk's height and the height of a contact that counts as a contact with the

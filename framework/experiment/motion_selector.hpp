@@ -5,13 +5,13 @@
 // at the position of the tap, in bits. If there is an object, the tap also reveals its height. If the height has the
 // variance v and the motion has the standard deviation d, this information is log2(1 + v / d^2) / 2 bits (Cover and
 // Thomas 2006, section 9.1). The total information is multiplied by the motion's contact probability, and divided by
-// its mean duration over both cases, object and desk. Durations, standard deviations and contact probabilities begin
-// with expected values, and are updated by the taps of the motion. So the fast motion is used along an outline, and the
-// precise motion is used where only the height is unknown.
+// its expected duration, averaged over the cases object and desk. Durations, standard deviations and contact
+// probabilities begin with expected values, and are updated by the taps of the motion. So the fast motion is used along
+// an outline, and the precise motion is used where only the height is unknown.
 //
 // The position is chosen before the motion, by the information per tap, not per second. Positions near the previous tap
-// and on tall objects take less time. But taps at the edge of an outline, although they take longer, reduce the errors
-// faster per second.
+// and on tall objects take less time. But taps at the edge of an outline reduce the errors by more per second, although
+// they take longer.
 #pragma once
 
 #include "experiment/tap_record.hpp"

@@ -12,10 +12,10 @@
 namespace palpate {
 namespace {
 
-/// Visits the allowed candidates for which worth(score, candidate) holds, in no particular order. A block of kBlock
-/// candidates is skipped if worth() does not hold for the highest score of the block with the first index of the block.
-/// In each group of kBlock blocks, the block with the highest score is first, because its visits may make visits to the
-/// other blocks unnecessary.
+/// Visits the allowed candidates for which worth(score, candidate) holds, in no particular order. Skips a block of
+/// kBlock candidates if worth() does not hold for the block's highest score and first index. In each group of kBlock
+/// blocks, the block with the highest score is first, because its visits may make visits to the other blocks
+/// unnecessary.
 template <class Worth, class Visit>
 void for_allowed(const Eigen::VectorXd& scores, const Allowed& allowed, const Worth& worth, const Visit& visit) {
   constexpr Eigen::Index kBlock = loops::kScores;

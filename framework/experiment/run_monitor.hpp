@@ -26,8 +26,8 @@ class RunMonitor {
   /// Returns the counts so far, without state and errors.
   const RunResult& counts() const { return result_; }
 
-  /// Stores in `tap` the state and the errors of the belief before the tap, and whether the line really ends on an
-  /// object.
+  /// Stores in `tap` the state and the errors of the belief before the tap, and whether the tap's line ends on an
+  /// object of the true scene.
   void describe(TapRecord& tap, Belief& belief);
 
   /// Returns the scene in its current state; null if unknown.

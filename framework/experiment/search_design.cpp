@@ -15,20 +15,21 @@ namespace {
 // on average, with any of these numbers of discs.
 constexpr int kDiscs = 16000;
 constexpr int kWhole = 1000;
-// Errors of an arm of Baxter's class: standard deviation of the tip's position, metres (kBlur), and probability to miss
-// a contact (kMissed). The search assumes these errors for every arm. A perfect arm finds the same cubes equally soon
-// with and without this assumption. The margin around the discs then covers the corners of boxes.
+// Errors of an arm of Baxter's class: standard deviation of the tip's position, metres (kBlur), and probability that
+// the arm does not detect a contact (kMissed). The search assumes these errors for every arm. A perfect arm finds the
+// same cubes equally soon with and without this assumption. The assumed position error acts as a margin around the
+// discs, which covers the corners of boxes.
 constexpr double kBlur = 0.002;
 constexpr double kMissed = 0.02;
 constexpr double kFar = 5.0 * kBlur;
 
-/// Returns the probability that a tap finds no object at the distance `inside` inside of the object's edge, metres;
-/// negative outside.
+/// Returns the probability that a tap does not find an object. `inside`: distance of the tap from the object's edge,
+/// metres; positive inside the object, negative outside.
 double passed_by(double inside) { return 1.0 - (1.0 - kMissed) * 0.5 * math::erfc(-inside / (kBlur * std::sqrt(2.0))); }
 
 double between(double least, double most, Random& random) { return least + (most - least) * random.uniform(); }
 
-// Replace std::ceil and std::floor, which are slow function calls without SSE4.1.
+// rounded_up() and rounded_down() replace std::ceil and std::floor, which are slow function calls without SSE4.1.
 int rounded_up(double t) {
   const int whole = static_cast<int>(t);
   return whole + (whole < t ? 1 : 0);
@@ -38,8 +39,8 @@ int rounded_down(double t) {
   return whole - (whole > t ? 1 : 0);
 }
 
-/// Indices of the first and the last of `count` positions start, start + step, ... in [low, high]; if there are none,
-/// the last is before the first.
+/// Indices of the first and the last position within [low, high], among the `count` positions start, start + step, ....
+/// If there is no such position, `last` is less than `first`.
 struct Span {
   Span(double low, double high, double start, double step, int count)
       : first(std::max(0, rounded_up((low - start) / step))),

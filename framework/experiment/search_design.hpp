@@ -15,12 +15,12 @@
 namespace palpate {
 
 /// A greedy search. It draws 16000 discs, each a hypothesis of the hidden object. The next tap is made where the discs
-/// have the largest total weight. After each tap that finds no object, the search computes for every nearby disc the
-/// probability that the tap would have missed an object with this outline, and multiplies the weight of the disc by
-/// this probability. There are two causes of a miss: the tap lands outside the edge because of position errors, or the
-/// arm does not detect the contact. So a tap with errors of millimetres does not rule out an object whose edge is
-/// within these errors. Several positions may have the same weight, for example when no discs are left. Then the
-/// position farthest from all taps and from the edge of the area is chosen.
+/// have the largest total weight. After each tap that finds no object, the search computes a probability for every
+/// nearby disc: the probability that the tap would have missed an object with this outline. The weight of the disc is
+/// multiplied by this probability. There are two causes of a miss: the tap lands outside the edge because of position
+/// errors, or the arm does not detect the contact. So a tap with errors of millimetres does not rule out an object
+/// whose edge is within these errors. Several positions may have the same weight, for example when no discs are left.
+/// Then the position farthest from all taps and from the edge of the area is chosen.
 ///
 /// Diameters lie between the smallest width and the area's shorter side, uniformly in their logarithm. With only the
 /// smallest diameter, the search would scan the area in narrow rows and find large objects late. Large discs lead the
@@ -57,7 +57,7 @@ class SearchDesign {
   void weigh(const Disc& disc, int weight);
   /// Returns for each candidate the total weight of the discs that contain it.
   std::vector<int> weights() const;
-  /// Returns the radius of the largest disc around a position that lies in the area and contains no tap.
+  /// Returns the radius of the largest disc that is centred at `place`, lies in the area and contains no tap.
   double room(const Target& place) const;
 
   double smallest_;
@@ -65,7 +65,8 @@ class SearchDesign {
   Area area_;
   Random random_;
   std::vector<Disc> discs_;  ///< discs with a positive weight
-  std::vector<int> rises_;   ///< per row: differences between neighbouring weights(); the weight outside the row is 0
+  /// per row of candidates: differences between neighbouring values of weights(); values outside the row count as 0
+  std::vector<int> rises_;
   std::vector<Target> looked_;
   std::size_t struck_off_ = 0;  ///< number of positions in looked_ that next() has already applied to the discs
 };

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
 // The conditions that stop a run before its tap budget is spent.
 //
-// The rule `expected_rmse`: the errors of neighbouring cells are correlated, so the RMSE of one scene deviates from its
-// expectation. A rule that is checked after each tap stops at a tap after which the belief happens to be too
-// optimistic. So the expectation must be below the bound by a margin. The largest deviation comes from an object that
-// no tap has touched: it adds little to the expectation, but its full height to the error. If the belief computes the
-// probability of such an object, this probability must be small, and a smaller margin suffices. The constants were
-// chosen on seven scenes and checked on other scenes; stopping_table in tests/benchmark prints the results.
+// The rule `expected_rmse` needs a margin: the errors of neighbouring cells are correlated, so the RMSE of one scene
+// deviates from its expectation. A rule that is checked after each tap tends to stop after a tap for which the belief
+// happens to be too optimistic. So the expectation must be below the bound by a margin. The largest deviation comes
+// from an object that no tap has touched: this object adds little to the expectation, but its full height to the error.
+// If the belief computes the probability of such an object, this probability must be small, and a smaller margin
+// suffices. The constants were chosen on seven scenes and checked on other scenes; stopping_table in tests/benchmark
+// prints the results.
 #pragma once
 
 #include "experiment/experiment_options.hpp"
@@ -21,7 +22,7 @@ namespace palpate {
 /// probability of an untouched object, else kLargeMargin applies.
 constexpr double kMargin = 1.55;
 constexpr double kLargeMargin = 1.75;
-/// Largest probability of an untouched object with which a run may stop.
+/// Largest probability of an untouched object at which a run may stop.
 constexpr double kMostUndiscovered = 0.23;
 
 /// Returns whether an expected RMSE (metres; nullopt if unknown) is low enough for `bound`, metres. `undiscovered`:

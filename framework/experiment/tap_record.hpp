@@ -18,10 +18,10 @@
 
 namespace palpate {
 
-/// Prefix of the reason of a fallback that was necessary because of a calling program's scores.
+/// Beginning of a fallback's reason, if the scores of a calling program made the fallback necessary.
 constexpr const char* kOfCaller = "of the caller's scores: ";
 
-/// One tap: the request, the choice, the state of the models before it, and the result.
+/// One tap: the request, its choice, the state of the models before the tap, and the result.
 struct TapRecord {
   TapRequest request;
   TapResult result;
@@ -56,7 +56,7 @@ struct TapRecord {
   }
 };
 
-/// Replacement for the strategy's choice: the scores of a caller, one per candidate, or a recorded choice.
+/// Replacement for the strategy's choice: the scores of a calling program, one per candidate, or a recorded choice.
 struct TapOverride {
   Eigen::VectorXd scores;           ///< finite; empty if there is a `choice`
   std::optional<TapRecord> choice;  ///< has line, source, `why` and all fields of the score
@@ -65,7 +65,7 @@ struct TapOverride {
 /// Stop reason of a run that its user interrupted. Such a run has no summary and can be resumed.
 constexpr const char* kStoppedByUser = "interrupted";
 
-/// Reasons of taps that fail because the backend returned an impossible result.
+/// Reasons that are recorded for a failed tap if the backend returned an impossible result.
 constexpr const char* kHeightRefused = "the backend reported a height that is not a finite number";
 constexpr const char* kAlongRefused = "the backend reported an end point that is not on the path of the tool";
 constexpr const char* kNumberRefused = "the backend reported a force or a time that is not a finite number";
@@ -79,7 +79,7 @@ struct RelabelledContact {
   bool on_object = false;  ///< current label
 };
 
-/// Contacts at positions on one object of the true scene, whatever their labels.
+/// Statistics of the contacts whose positions are on one object of the true scene, whatever labels the contacts have.
 struct ObjectTouches {
   int taps = 0;
   std::optional<int> first_tap;

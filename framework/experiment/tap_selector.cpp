@@ -79,7 +79,7 @@ void TapSelector::allow(const Belief& belief) {
 
 bool TapSelector::choose_initial(const Belief& belief, TapRecord& tap) {
   tap.request.source = Source::initial;
-  tap.candidate = 0;  // drawn lines: the first
+  tap.candidate = 0;  // if lines are drawn, the first line is tapped
   if (belief.candidates().fixed) {
     const std::optional<int> again = second_look(belief);
     tap.candidate = again ? *again : search_ ? search_->next(allowed_) : initial_[taps_.size()];

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Choice of the next tap. At first the initial design or the search chooses the taps, later the acquisition's scores,
-// with a rule for ties. A fallback chooses if the scores do not distinguish candidates.
+// Choice of the next tap. The initial design or the search chooses the first taps. Then the acquisition's scores
+// choose, with a rule for ties. If the scores do not distinguish candidates, a fallback chooses.
 #pragma once
 
 #include "experiment/check_quantities.hpp"

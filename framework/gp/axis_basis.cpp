@@ -52,8 +52,8 @@ class AxisCovariances {
 };
 
 /// Part of the covariance matrix K along an axis: k(h, h') + sign * k(h, mirror image of h') for h and h' among the
-/// first `count` positions. With the sign 1 this is the even part, with -1 the odd part. With 0 and all positions, it
-/// is K itself.
+/// first `count` positions. If `sign` is 1, this is the even part of K; if -1, the odd part. If `sign` is 0 and `count`
+/// includes all positions, it is K itself.
 struct SymmetryPart {
   const AxisCovariances& covariances;
   Eigen::Index count;
@@ -79,7 +79,8 @@ struct SymmetryPart {
       auto column = columns.col(rank);
       column = covariances.column(pivot).head(count);
       if (sign != 0.0) column += sign * covariances.column(covariances.mirror_image(pivot)).head(count);
-      // An odd function is 0 in the middle. Rounding errors there would be as large as the smallest directions.
+      // An odd function is 0 in the middle. Without this assignment, the rounding error in the middle would be as large
+      // as the smallest columns.
       if (sign < 0.0 && has_middle()) column(count - 1) = 0.0;
       column.noalias() -= columns.leftCols(rank) * columns.row(pivot).head(rank).transpose();
       column /= std::sqrt(residual(pivot));
@@ -92,8 +93,8 @@ struct SymmetryPart {
 
   /// Computes an orthonormal basis of the span of `columns`, extended to all positions by symmetry.
   Eigen::MatrixXd orthonormal(const Eigen::MatrixXd& columns) const {
-    // Each position counts for itself and for its mirror image. If half directions are orthonormal with these weights,
-    // the directions over all positions are orthonormal, too.
+    // Each position of the half axis stands for itself and for its mirror image, so its weight is sqrt(2). If the
+    // weighted half directions are orthonormal, the directions over all positions are orthonormal, too.
     Eigen::VectorXd weights = Eigen::VectorXd::Constant(count, sign == 0.0 ? 1.0 : std::sqrt(2.0));
     if (has_middle()) weights(count - 1) = 1.0;
     const Eigen::HouseholderQR<Eigen::MatrixXd> qr(weights.asDiagonal() * columns);

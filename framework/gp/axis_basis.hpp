@@ -19,10 +19,10 @@ struct AxisBasis {
   int rank() const { return static_cast<int>(directions.cols()); }
 };
 
-/// Computes a basis for G positions. At each position, the variance outside of its span is at most `tolerance` times
-/// the largest variance. A Cholesky factorisation with diagonal pivoting finds the span (Harbrecht, Peters and
-/// Schneider 2012), and a QR factorisation finds the basis. With symmetry, the even part and the odd part are
-/// factorised separately. Cost for rank r: O(G r^2).
+/// Computes a basis for G positions. At each position, the basis leaves out a variance of at most `tolerance` times the
+/// largest variance. A Cholesky factorisation with diagonal pivoting finds the span (Harbrecht, Peters and Schneider
+/// 2012), and a QR factorisation finds the basis. If positions and kernel are symmetric, the even part and the odd part
+/// of the matrix are factorised separately. Cost for rank r: O(G r^2).
 AxisBasis axis_basis(const Kernel& kernel, int axis, const Eigen::VectorXd& positions, double tolerance);
 
 /// Returns the rank of the basis that axis_basis() computes, or `most` if the rank is larger.

@@ -28,8 +28,8 @@ KindChoice choose_kind(const EngineSettings& settings, const Kernel& kernel, con
             fmt::format("the error bound of lowrank {:.1e} is above the accuracy {:.1e}", error, settings.accuracy)};
   }
   // Average numbers of multiplications per candidate and tap. `grid` needs one multiplication per earlier tap.
-  // `lowrank` needs half of the rank, because the grid is symmetric, and once per tap the products in the coordinates
-  // of the basis. In a short run, the computation of the basis costs more than it saves.
+  // `lowrank` needs half of the rank, because the grid is symmetric. In addition, each tap needs matrix products in the
+  // coordinates of the basis. In a short run, the computation of the basis costs more than it saves.
   const double of_grid = 0.5 * settings.taps;
   constexpr double kFewestForLowrank = 12;
   if (of_grid < kFewestForLowrank)

@@ -27,7 +27,7 @@
 
 namespace palpate {
 
-/// One row of the factor, for the tap in the last row of `positions`.
+/// New row of the Cholesky factor. It belongs to the tap in the last row of `positions`.
 struct FactorRow {
   PointsView positions;  ///< positions of all n rows so far, this row included
   VectorView factor;     ///< l, n - 1 values
@@ -46,8 +46,8 @@ class Engine {
   /// Returns whether absorb() needs the new row of L^-1.
   virtual bool needs_inverse() const = 0;
 
-  /// Resets the maps to the prior, with `means` maps of means. `prior` contains the kernel variance at each candidate,
-  /// or a single value if all are equal.
+  /// Resets the maps to the prior. Afterwards there are `means` maps of means. `prior` contains the kernel variance at
+  /// each candidate, or a single value if all are equal.
   void restart(int means, const VectorView& prior) {
     clear();
     maps_.restart(means, prior);
@@ -84,7 +84,7 @@ std::unique_ptr<Engine> make_dense(const std::shared_ptr<Workers>& workers, cons
                                    const CandidateGrid& candidates);
 std::unique_ptr<Engine> make_grid(const std::shared_ptr<Workers>& workers, const Kernel& kernel,
                                   const CandidateGrid& candidates);
-/// `tolerance`: bound of the variance outside of the basis, relative to the largest variance; see axis_basis().
+/// `tolerance`: largest variance that the basis may leave out, as a share of the largest variance; see axis_basis().
 std::unique_ptr<Engine> make_lowrank(const std::shared_ptr<Workers>& workers, const Kernel& kernel,
                                      const CandidateGrid& candidates, double tolerance);
 
@@ -93,8 +93,8 @@ struct EngineSettings {
   enum class Kind { automatic, dense, grid, lowrank };
 
   Kind engine = Kind::automatic;
-  /// Largest error of the engine that `automatic` chooses, in addition to the rounding of `dense`. Errors of means are
-  /// in prior standard deviations, errors of variances in prior variances.
+  /// With `automatic`: largest error that the chosen engine may have in addition to the rounding errors of `dense`.
+  /// Errors of means are in prior standard deviations, errors of variances in prior variances.
   double accuracy = 1e-9;
   double tolerance = 1e-15;  ///< tolerance of `lowrank`; see make_lowrank()
   int taps = 64;             ///< expected number of taps, for the reserved memory and for the choice by `automatic`
@@ -106,13 +106,13 @@ struct EngineChoice {
   std::string reason;  ///< reason of the choice: one line without a comma, because it becomes a cell of a CSV file
 };
 
-/// Returns the reason why the settings cannot be used with this kernel and these candidates, as the end of a sentence.
-/// Returns an empty text if they can be used. `grid` and `lowrank` need a separable kernel and a product grid.
+/// Returns the reason why the settings cannot be used with this kernel and these candidates, as a clause without a full
+/// stop. Returns an empty text if they can be used. `grid` and `lowrank` need a separable kernel and a product grid.
 std::string objection(const EngineSettings& settings, const Kernel& kernel, const CandidateGrid& candidates);
 
-/// Creates the engine of the settings, or with `automatic` the fastest admissible engine. `error` is the error bound of
-/// `lowrank`; `lowrank` is not admissible if this bound exceeds the accuracy. Requires that there is no objection() to
-/// the settings. Kernel and candidates must outlive the engine.
+/// Creates the engine that the settings name. With `automatic`, creates the fastest admissible engine. `error` is the
+/// error bound of `lowrank`; `lowrank` is not admissible if this bound exceeds the accuracy. objection() must have
+/// returned an empty text for the settings. Kernel and candidates must outlive the engine.
 EngineChoice choose_engine(const EngineSettings& settings, const Kernel& kernel, const CandidateGrid& candidates,
                            double error = 0.0);
 

@@ -47,8 +47,9 @@ class DenseEngine final : public Engine {
  private:
   void clear() override { rows_.clear(); }
 
-  loops::Panels rows_;                            ///< V, one panel per block of candidates
-  std::vector<loops::AlignedArray> covariances_;  ///< scratch per worker: covariances of blocks with the last tap
+  loops::Panels rows_;  ///< V, one panel per block of candidates
+  /// scratch per worker: covariances of some candidates with the last tap
+  std::vector<loops::AlignedArray> covariances_;
 };
 
 }  // namespace

@@ -6,7 +6,7 @@ namespace {
 
 using loops::kLine;
 
-/// Number of strips in a group. The strips of a group use the covariances of the columns while these are in the cache.
+/// Number of strips in a group. All strips of a group use the same covariances along x, which then stay in the cache.
 /// Each worker takes a whole group at a time.
 constexpr int kGroup = 4;
 
@@ -62,7 +62,7 @@ class GridEngine final : public Engine {
     to.append(column.data());
   }
 
-  /// Multiplies the covariances of a strip's rows with each tap by the tap's entry of c.
+  /// Multiplies the covariances between the strip's rows and each tap by the tap's entry of c (see engine.hpp).
   static void scale(const double* rows, const VectorView& by, double* out) {
     using Rows = Eigen::Array<double, loops::kStripRows, Eigen::Dynamic>;
     const Eigen::Map<const Rows> from(rows, loops::kStripRows, by.size());

@@ -16,10 +16,11 @@ constexpr std::ptrdiff_t kTile = std::ptrdiff_t{kRows} * loops::kPanelLines * kL
 struct BasisAxis {
   const Eigen::VectorXd& positions;
   AxisBasis basis;
-  Eigen::VectorXd covariance;   ///< covariances of the newest tap; after take(), their part outside of the basis
+  /// covariances of the newest tap with `positions`; take() keeps only the part outside the span of the basis
+  Eigen::VectorXd covariance;
   Eigen::VectorXd coordinates;  ///< coordinates of the covariance in the basis
-  double largest = 0.0;         ///< largest covariance of the newest tap
-  double residual = 0.0;        ///< largest part of these covariances outside of the span of the basis
+  double largest = 0.0;         ///< largest absolute covariance of the newest tap
+  double residual = 0.0;        ///< largest absolute value of the part outside the span of the basis
 
   BasisAxis(const Kernel& kernel, int axis, const Eigen::VectorXd& along, double tolerance)
       : positions(along),
@@ -112,7 +113,7 @@ class LowrankEngine final : public Engine {
     errors_(in_x_.rows() - 1) = error;
   }
 
-  /// Computes S = P_y^T diag(c) P_x strip by strip along the rows of S, and stores S^T in strips along the rows of S^T.
+  /// Computes S = P_y^T diag(c) P_x in strips of rows, and stores S^T in strips of its rows, too.
   void form_shares(const VectorView& inverse) {
     const int depth = in_x_.rows();
     const auto needed = static_cast<std::size_t>(depth) * kRows;
@@ -147,7 +148,7 @@ class LowrankEngine final : public Engine {
                     rows_.data());
   }
 
-  /// Copies the coefficients of a strip's rows, direction by direction.
+  /// Copies the coefficients that form_rows() computed for the grid rows of a strip, direction by direction.
   void gather(int strip, double* out) const {
     const int row = strip * kRows;
     const int panel = row / (loops::kPanelLines * kLine);

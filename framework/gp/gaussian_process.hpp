@@ -30,16 +30,17 @@ struct GpDiagnostics {
   /// Natural logarithm of the density p(targets), with the targets in their unit. 0 without taps.
   double log_marginal_likelihood = 0.0;
   /// r^T K^-1 r for the standardised targets r; an unknown constant is integrated out. If the signal is right, the
-  /// expected value is the number of taps (less 1 for the constant). Otherwise the value is multiplied by the ratio of
-  /// the true to the assumed variance. 0 without taps.
+  /// expected value is the number of taps (less 1 for the constant). If the signal is wrong, the expected value is
+  /// multiplied by the true variance divided by the assumed variance. 0 without taps.
   double misfit = 0.0;
   FactorReport factors;    ///< jitter in the squared unit of the targets
   double condition = 1.0;  ///< estimated condition number of the taps' covariance, noise and jitter included
 };
 
 /// Regression with a Gaussian process (Rasmussen and Williams 2006, algorithm 2.1) over a fixed set of candidates. A GP
-/// has one or several outputs: quantities that are measured at the same positions, with the same kernel and ratio of
-/// noise to signal. The outputs share one factorisation, and their variances differ only by the factor signal^2.
+/// has one or several outputs: quantities that are measured at the same positions, with the same kernel and the same
+/// ratio of noise to signal. The outputs share one factorisation, and their variances differ only by the factor
+/// signal^2.
 ///
 /// Internally, targets are standardised to (value - mean) / signal. The covariance is the covariance of the kernel,
 /// plus (noise / signal)^2 on the diagonal. Results are converted back to the unit of the targets. A tap costs one
@@ -47,7 +48,8 @@ struct GpDiagnostics {
 /// maps, and O(n^3) for the factor.
 ///
 /// An unknown constant in the mean is integrated out (the same book, section 2.7). Its posterior needs the vector L^-1
-/// 1, where 1 is the vector of ones, and the map V^T L^-1 1. Both are updated tap by tap, too.
+/// 1, where 1 is the vector of ones, and the map V^T L^-1 1 (engine.hpp defines L and V). Each tap updates this vector
+/// and this map, too.
 ///
 /// A tap that makes the matrix singular in double precision, such as a duplicate without noise, raises the jitter. The
 /// jitter is a variance on the whole diagonal and part of the model from then on. If no jitter helps, because the
@@ -74,8 +76,8 @@ class GaussianProcess {
   /// again.
   bool set_positions(const PointsView& positions);
 
-  /// Keeps maps of the means of the outputs 0 to `outputs` - 1. At first, only the map of output 0 is kept. The maps
-  /// are computed again if there were fewer.
+  /// Keeps maps of the means of the outputs 0 to `outputs` - 1. At first, only the map of output 0 is kept. If fewer
+  /// maps were kept before, all maps are computed again.
   void show(int outputs) { maps_.show(outputs); }
   int shown() const { return maps_.shown(); }
 
@@ -100,7 +102,8 @@ class GaussianProcess {
 
   GpDiagnostics diagnostics(int output = 0) const;
 
-  /// Return the positions of all taps, n x 2, and their targets of an output, as given to add() or set later.
+  /// Return the positions of all taps (n x 2), and the targets of all taps for one output, as given to add() or set
+  /// later.
   PointsView positions() const { return positions_.topRows(size_); }
   VectorView targets(int output = 0) const { return targets_.col(output).head(size_); }
   /// Returns a counter that increases with every change of the hyperparameters or of a tap's position.
@@ -145,7 +148,7 @@ class GaussianProcess {
   Eigen::MatrixXd solved_;          ///< L^-1 B; see FactoredTaps
   Eigen::VectorXd covariance_;      ///< scratch: covariances of the new tap with the earlier taps
   FactorReport report_;             ///< jitter divided by signal^2; redundant taps are not counted here
-  std::vector<double> fit_memory_;  ///< numbers that a fit leaves for the next fit
+  std::vector<double> fit_memory_;  ///< numbers that a fit stores for the next fit
   int generation_ = 0;
 };
 

@@ -14,7 +14,8 @@ namespace {
 using namespace math::HWY_NAMESPACE;  // NOLINT(google-build-using-namespace)
 constexpr int kLineVectors = kLine / kLanes;
 
-// Size of a tile of registers. The sums of a tile, one row of B and one number of A fit into the 16 or 32 registers.
+// Size of a tile whose sums are kept in registers. The sums of a tile, one row of B and one number of A fit into the 16
+// or 32 registers.
 #if HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_NEON
 constexpr int kTileRows = 8;
 constexpr int kTileVectors = 3;
@@ -207,8 +208,8 @@ void absorb_dense(const DenseRow& row, const Update& update) {
   }
 }
 
-/// Copies rows of cells. Rows of cells are padded to cache lines, rows of the result are not. So the last vector of a
-/// row may overlap the vector before it.
+/// Copies rows of cells. Source rows are padded to cache lines, but destination rows are not. The last vector of a row
+/// may therefore overlap the previous vector.
 template <bool kMirrored>
 HWY_INLINE void read_rows(const CellCopy& cells, const MapTransform& reading) {
   const Vector least = all(reading.least);
@@ -312,8 +313,8 @@ void solve_lower_transposed(const double* lower, int n, double* x) {
 }
 
 void highest(const double* from, int count, double* out) {
-  // Number of vectors of maxima that are updated in turn, because each update waits for the previous update of the same
-  // vector.
+  // Number of vectors of maxima that are updated in turn. A single vector would be slower, because each update waits
+  // for the previous update of the same vector.
   constexpr int kTogether = std::min(kScores / kLanes, 8);
   for (int i = 0; i < count; ++i, from += kScores) {
     Vector most[kTogether];

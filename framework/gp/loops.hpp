@@ -3,7 +3,8 @@
 // (math/highway.hpp).
 //
 // All pointers are aligned to a cache line, and their arrays must not overlap. Results are equal on all instruction
-// sets with fused multiplication and addition, because no sum depends on the width of a vector.
+// sets with fused multiplication and addition, because the order of the terms in a sum does not depend on the width of
+// a vector.
 #pragma once
 
 #include <cstddef>
@@ -17,7 +18,7 @@ constexpr int kPanelLines = 3;                                        ///< width
 constexpr int kStripRows = 8;                                         ///< rows of a grid that are updated together
 constexpr int kBlock = kStripRows * kPanelLines * kLine;  ///< cells of a dense map that are updated together
 
-constexpr int kScores = 64;  ///< numbers per maximum of highest()
+constexpr int kScores = 64;  ///< highest() computes one maximum per this many numbers
 
 constexpr int kMeans = 3;  ///< largest number of maps of means
 
@@ -47,8 +48,8 @@ struct StripProduct {
 /// Product on a grid that is symmetric in its columns. The first `even` rows of B are the left halves of even functions
 /// of the column; the other rows are the left halves of odd functions. Let E and O be the sums over the even and the
 /// odd rows. Then v is E + O in the left half of the grid, and the mirror image of E - O in the right half. This takes
-/// half of the multiplications. The cells of a tile's mirror image are `mirror` cells after the tile, in the same
-/// order.
+/// half of the multiplications of a product over all columns. The cells of a tile's mirror image are `mirror` cells
+/// after the tile, in the same order.
 struct MirroredProduct {
   StripProduct half;
   int even;
@@ -75,10 +76,10 @@ struct MapTransform {
   double offset;
 };
 
-/// Source and destination of a copy of map cells: `rows` rows of `count` numbers each. The rows begin at `from` with
-/// the distance `width`, and are copied to `to` with the distance `columns`. Each source row begins at a cache line. If
-/// `mirrored` is true, `to` is the last number of its row, and the rows are written backwards. `to` need not be
-/// aligned.
+/// Source and destination of a copy of map cells: `rows` rows of `count` numbers each. The first source row begins at
+/// `from`, and consecutive source rows are `width` numbers apart. The first destination row begins at `to`, and
+/// consecutive destination rows are `columns` numbers apart. Each source row begins at a cache line. If `mirrored` is
+/// true, `to` is the last number of its row, and the rows are written backwards. `to` need not be aligned.
 struct CellCopy {
   const double* from;
   std::ptrdiff_t width;

@@ -34,12 +34,13 @@ struct MapBlock {
 /// updates whole strips. A strip is a sequence of tiles, one tile per panel of columns.
 class Tiling {
  public:
-  /// For candidates at any positions. Each strip is one tile of kBlock consecutive candidates.
+  /// Returns the layout for candidates at any positions. Each strip is one tile of kBlock consecutive candidates.
   static Tiling blocks(int candidates);
-  /// For a product grid. Each strip has loops::kStripRows rows of the grid and the tiles of loops::StripProduct.
+  /// Returns the layout for a product grid. Each strip has loops::kStripRows rows of the grid and the tiles of
+  /// loops::StripProduct.
   static Tiling grid(const CandidateGrid& candidates);
-  /// For a product grid, with the tiles of loops::MirroredProduct: columns of the left half of the grid, and their
-  /// mirror images in the right half.
+  /// Returns the layout for a product grid with the tiles of loops::MirroredProduct. A tile has columns in the left
+  /// half of the grid, and mirror images of these columns in the right half.
   static Tiling mirrored_grid(const CandidateGrid& candidates);
 
   int strips() const { return strips_; }
@@ -95,7 +96,8 @@ class MapTiles {
   /// are equal.
   void restart(int means, const VectorView& prior);
 
-  /// Returns the argument `update` of a loop, for the strips from `strip` on. `coefficients`: one coefficient per mean.
+  /// Returns the value to pass as `update` to a function of loops.hpp that updates strips from the index `strip` on.
+  /// `coefficients`: one coefficient per mean.
   loops::Update update(int strip, const double* coefficients);
 
   /// Copy the mean k, or the variance, at all candidates to `out`, transformed by `reading`.

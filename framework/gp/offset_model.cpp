@@ -9,8 +9,9 @@
 namespace palpate {
 namespace {
 
-constexpr double kOther = 0.05;   // probability that a low contact is not a contact with the bare desk
-constexpr double kOthers = 0.01;  // metres: standard deviation of the height of such a contact
+constexpr double kOther = 0.05;  // probability that a low contact is not a contact with the bare desk
+// metres: standard deviation of the height of a low contact that is not with the bare desk
+constexpr double kOthers = 0.01;
 // A low contact within kBeside of an object contact below kRim may be at the rim of the object. Objects with higher
 // contacts are assumed to have walls that reach down to the desk.
 constexpr double kRim = 0.04;     // metres above the desk
@@ -29,7 +30,7 @@ void OffsetModel::add(const Target& place, double seconds, double excess, int mo
 
 void OffsetModel::find_desk() {
   const std::size_t contacts = touched_.size();
-  std::vector<bool> left(contacts, true);  // contacts that take part in the search, without single low contacts
+  std::vector<bool> left(contacts, true);  // contacts that take part in the search; single low contacts are removed
   above_ = left;
   search_from_below(above_);
   std::vector<bool> found = above_;
@@ -39,7 +40,8 @@ void OffsetModel::find_desk() {
       if (left[i] && !found[i]) lows.push_back(i);
     }
     if (lows.size() > 1) above_ = found;
-    if (lows.size() != 1) return;  // no two low contacts agree, so the result of the first search is kept
+    // With 0 low contacts, no two low contacts agree, and above_ keeps the result of the first search.
+    if (lows.size() != 1) return;
     left[lows.front()] = false;
     found = left;
     search_from_below(found);
@@ -48,7 +50,8 @@ void OffsetModel::find_desk() {
 
 /// Removes the contacts with the desk from `left`. Contacts that are clearly above the desk remain.
 void OffsetModel::search_from_below(std::vector<bool>& left) const {
-  // The GP of covariance() as a linear regression: the common offset, the drift, and the offset of each motion.
+  // Linear regression that is equivalent to the GP of covariance(). Its coefficients are the common offset, the drift,
+  // and the offset of each motion.
   const auto motions = static_cast<Eigen::Index>(motions_.size());
   Eigen::VectorXd mean = Eigen::VectorXd::Zero(2 + motions);
   Eigen::VectorXd prior = Eigen::VectorXd::Constant(2 + motions, (1.0 - kShared) * prior_.offset * prior_.offset);
@@ -115,7 +118,8 @@ void OffsetModel::judge_all() {
   problem.signals = {1.0};
   problem.noises = {prior_.noise};
   problem.outlier_deviation = kOthers;
-  // More sets would change the offset by only a few tenths of a millimetre, so the most probable sets suffice.
+  // More sets of outliers would change the offset by only a few tenths of a millimetre, so the most probable sets
+  // suffice.
   constexpr OutlierSearchLimits kLimits{8, 1e-3, 1e-6};
   if (n > 0) posterior_ = infer_outliers(problem, kLimits);
 }
@@ -124,7 +128,7 @@ OffsetModel::Estimate OffsetModel::at(double seconds, int motion) const {
   const OffsetInput now{seconds, motion};
   Estimate out{0.0, covariance(now, now)};
   if (judged_.empty()) return out;
-  // Size of the coefficients without the broad signal, which is unused here.
+  // Number of coefficients: the constant and one per contact. The coefficients of the broad signal are unused here.
   const auto size = static_cast<Eigen::Index>(judged_.size()) + 1;
   Eigen::VectorXd z(size);
   z(0) = 1.0;

@@ -6,17 +6,17 @@
 // process over the time t, with the covariance o^2 + d^2 t t' (Rasmussen and Williams 2006, section 2.1.2).
 //
 // The label of a contact, desk or object, is unknown, but nothing is below the desk. A height relative to the desk is y
-// = offset + drift + z + noise, with z = 0 on the desk and z >= 0 elsewhere. So the lowest contacts are upper bounds of
-// the error, and count as contacts with the desk at first. A forward search (Atkinson and Riani 2000) then repeatedly
-// adds the contact with the lowest residual, in standard deviations of its prediction. The search ends when the next
-// contact is clearly above the desk. The standard deviation of a prediction covers the noise, the drift between the
-// times, and differences between motions. If an object contact counts as a desk contact at first, this is corrected
-// once the desk itself is touched. A single low contact may be an outlier, so it is not used as a bound. Two low
-// contacts that agree are used.
+// = offset + drift + z + noise, with z = 0 on the desk and z >= 0 elsewhere. So the heights of the lowest contacts are
+// upper bounds of the error, and these contacts count as contacts with the desk at first. A forward search (Atkinson
+// and Riani 2000) then repeatedly adds the contact with the lowest residual to the desk contacts. Residuals are divided
+// by the standard deviation of their prediction. The search ends when the next contact is clearly above the desk. The
+// standard deviation of a prediction covers the noise, the drift between the times, and differences between motions. If
+// an object contact counts as a desk contact at first, this is corrected once the desk itself is touched. A single low
+// contact may be an outlier, so it is not used as a bound. Two low contacts that agree are used.
 //
-// A contact may be low although the tool did not touch the bare desk, for example on the rim of a dome or after a jerk
-// of the force. Low contacts near a low object contact are left out. The other low contacts are tested for outliers
-// like taps on a surface (gp/outlier_posterior.hpp).
+// A contact may be low although the tool did not touch the bare desk, for example on the rim of a dome or after a
+// sudden change of the force reading. Low contacts near a low object contact are left out. The other low contacts are
+// tested for outliers like taps on a surface (gp/outlier_posterior.hpp).
 //
 // Each motion has an offset of its own in addition to the common offset. A fifth of the prior variance o^2 belongs to
 // the motion's own offset.
@@ -44,7 +44,8 @@ class OffsetModel {
  public:
   explicit OffsetModel(const OffsetPrior& prior) : prior_(prior) {}
 
-  /// Adds the next contact: `seconds` into the run, `excess` metres above the desk's height, made by `motion`.
+  /// Adds the next contact. `seconds`: robot time since the beginning of the run; `excess`: height above the desk,
+  /// metres; `motion`: index of the motion that made the contact.
   void add(const Target& place, double seconds, double excess, int motion = 0);
 
   /// Returns whether a contact (counted from 0) is clearly above the desk, given all contacts so far.

@@ -39,8 +39,8 @@ class OuterProducts {
   Eigen::Index count_ = 0;
 };
 
-/// Weighted moments of the coefficients over the sets of one signal. The coefficients belong to (1, c), where c is the
-/// vector of covariances with the taps, the broad signal included.
+/// Moments of the coefficients for one signal, summed over the sets with their weights. The coefficients belong to (1,
+/// c), where c is the vector of covariances with the taps, the broad signal included.
 struct Moments {
   explicit Moments(Eigen::Index taps) : mean(Eigen::VectorXd::Zero(taps + 1)), squares(taps + 1) {}
 
@@ -49,8 +49,8 @@ struct Moments {
   double weight = 0.0;
 };
 
-/// Adds the mean of one set, and the variance of the constant in it. Returns the index of the set's remainder, which is
-/// the GP without the set (see OutlierSearch).
+/// Adds the mean of the coefficients given one set, and the part of their variance that comes from the constant.
+/// Returns the index of the set's remainder, which is the GP without the set (see OutlierSearch).
 int add_set(OutlierSearch& search, const InlierGp& gp, const OutlierSet& set, double weight, Moments& moments) {
   const int remainder = search.remainder_of(set);
   const auto ones = search.solved_ones(remainder);
@@ -69,7 +69,8 @@ int add_set(OutlierSearch& search, const InlierGp& gp, const OutlierSet& set, do
   return remainder;
 }
 
-/// Adds the column u of a remainder, with the total weight of all sets that share this column.
+/// Adds u u^T for the vector u of a remainder (see OutlierSearch), times `weight`, the total weight of all sets that
+/// share u.
 void add_column(const OutlierSearch& search, int remainder, double weight, Moments& moments) {
   moments.squares.next() << 0.0, std::sqrt(weight) * search.column(remainder);
   moments.squares.commit();

@@ -8,8 +8,8 @@
 // Let K be the covariance of all taps with their noise, and A = K^-1. K' is the covariance of the taps outside of S,
 // and A' its inverse. A' and det K' follow from A without a factorisation of K':
 //     A' = A - A_:S (A_SS)^-1 A_S:,   log det K' = log det K + log det A_SS.
-// The cost is |S|^3 + n |S|^2 for the set S, and O(n) for all sets with one more tap. A search (OutlierSearch) finds
-// the most probable of the 2^n sets.
+// The cost is |S|^3 + n |S|^2 for one set S. The weights of all sets that add one tap to S then cost O(n) in total. A
+// search (OutlierSearch) finds the most probable of the 2^n sets.
 //
 // Whether a height is unusual depends on the variation of the surface and on the noise of a tap. A config gives only
 // rough values of signal and noise, so the posterior is a sum over several signals and noises, weighted by their
@@ -36,8 +36,8 @@ struct OutlierProblem {
   Eigen::MatrixXd broad_covariance;  ///< the same for the broad signal (see above); empty for none
   Eigen::VectorXd heights;           ///< y, minus the prior mean
   Eigen::VectorXd prior;             ///< pi, in [0, 1]
-  std::vector<double> signals;       ///< standard deviations of the surface, equally probable
-  std::vector<double> noises;        ///< standard deviations of a tap's noise, equally probable, above 0
+  std::vector<double> signals;       ///< possible standard deviations of the surface, equally probable
+  std::vector<double> noises;        ///< possible standard deviations of a tap's noise, equally probable, above 0
   Eigen::VectorXd extra_variance;    ///< n values: variance of each tap in addition to the noise; empty for none
   double broad_signal = 0.0;         ///< standard deviation of the broad signal
   double mean_deviation = 0.0;       ///< standard deviation of a constant that is added to f; 0 for none
@@ -46,27 +46,30 @@ struct OutlierProblem {
 
 /// Limits of the search, for each signal and noise.
 struct OutlierSearchLimits {
-  int expansions = 32;         ///< largest number of sets that are extended (by one more tap)
-  double min_summed = 1e-4;    ///< smallest weight of a set that is part of the sum, relative to the largest weight
-  double min_expanded = 1e-8;  ///< smallest relative weight of an extended set, which may lead to a probable set
+  int expansions = 32;       ///< largest number of sets that are extended (by one more tap)
+  double min_summed = 1e-4;  ///< smallest weight of a set that is part of the sum, relative to the largest weight
+  /// smallest weight of a set that is extended, relative to the largest weight; it is below min_summed, because an
+  /// extension may be more probable
+  double min_expanded = 1e-8;
 };
 
 struct OutlierPosterior {
   Eigen::VectorXd probability;  ///< n values: probability that the tap is an outlier
-  Eigen::VectorXd a;            ///< 1 + 2 n coefficients: of the constant, of k, of l
+  Eigen::VectorXd a;            ///< 1 + 2 n coefficients of z (see above): the constant, k, l
   Eigen::MatrixXd b;            ///< (1 + 2 n) x (1 + 2 n), symmetric
-  double s2 = 0.0;              ///< mean over the mixture of signal^2 plus broad signal^2
+  double s2 = 0.0;              ///< average of signal^2 + (broad signal)^2 over the mixture
   int summed_sets = 0;
   double next_weight = 0.0;  ///< weight of the most probable set that was not extended, relative to the largest weight
   /// Natural logarithm of p(y), averaged over signals and noises, up to a constant that depends only on n.
   double log_evidence = 0.0;
-  FactorReport report;  ///< largest jitter and number of redundant rows of any factorisation, and sums of the counts
+  FactorReport report;  ///< jitter and redundant rows: maximum over all factorisations; other counts: sums
 };
 
-/// Computes the posterior by a sum over sets. A noise variance below the bound of kInverseNoise is raised to this
-/// bound, which the report counts as jitter. Rows that no jitter makes independent are left out for this signal and
-/// noise: their taps keep their prior probability and do not influence the surface. All numbers are finite if heights
-/// and covariances are finite and far from overflow. Never throws.
+/// Computes the posterior by a sum over sets. A noise variance below the bound that kInverseNoise defines is raised to
+/// this bound, and the report counts the increase as jitter. If rows of the covariance matrix remain linearly dependent
+/// even with the largest jitter, their taps are left out for this signal and noise. Such taps keep their prior
+/// probability and do not influence the surface. All numbers are finite if heights and covariances are finite and far
+/// from overflow. Never throws.
 OutlierPosterior infer_outliers(const OutlierProblem& problem, const OutlierSearchLimits& limits = {});
 
 }  // namespace palpate

@@ -99,8 +99,8 @@ void OutlierSearch::compute_remainder(const OutlierSet& set, int to) {
       log_weights_[static_cast<std::size_t>(before)] + gp_.log_odds(set.tap) + 0.5 * height * height - math::log(root);
 }
 
-/// Computes the log weights of the sets that contain this set and one more tap, per tap. The values of taps that are
-/// already in the set are meaningless.
+/// Computes for each tap the log weight of the set that consists of this tap and the taps of the present set. The
+/// values of taps that are already in the present set are meaningless.
 void OutlierSearch::weigh_extensions(int remainder, Eigen::ArrayXd& out) const {
   const auto h = solved_heights(remainder).array();
   const auto o = solved_ones(remainder).array();
@@ -154,7 +154,7 @@ void OutlierSearch::search(const OutlierSearchLimits& limits) {
   }
 }
 
-/// Adds the sets that have one tap more than `parent`, unless they are known or too improbable.
+/// Adds all sets that consist of the taps of `parent` and one more tap, except sets that are known or too improbable.
 void OutlierSearch::extend(int parent, const Eigen::ArrayXd& log_weights, std::size_t expansions_left) {
   std::vector<std::uint64_t> bits(words_);
   for (int i = 0; i < gp_.taps(); ++i) {

@@ -25,12 +25,12 @@ struct InlierGp {
     double mean = 0.0;
     double log_weight = 0.0;
   };
-  /// Returns these values for a set with the sums `ones` = 1^T A' 1 and `heights` = 1^T A' y.
+  /// Returns the posterior of the constant for a set with the sums `ones` = 1^T A' 1 and `heights` = 1^T A' y.
   ConstantPosterior constant(double ones, double heights) const;
 
   double signal;
   double mean_deviation;           ///< standard deviation of the constant; 0 for none
-  Eigen::MatrixXd inverse;         ///< A = K^-1; rows that no jitter makes independent are 0
+  Eigen::MatrixXd inverse;         ///< A = K^-1; rows of redundant taps are 0
   Eigen::VectorXd solved_heights;  ///< A y
   Eigen::VectorXd solved_ones;     ///< A 1
   double log_evidence;             ///< log evidence of all heights without the constant, up to a common term
@@ -60,7 +60,8 @@ class OutlierSearch {
   const std::vector<OutlierSet>& sets() const { return sets_; }
   double largest_log_weight() const { return largest_; }
   double next_weight() const { return next_weight_; }  ///< see OutlierPosterior
-  int expansions() const { return scratch_; }          ///< remainders of expanded sets have smaller indices
+  /// Returns an index that is larger than the indices of all remainders of expanded sets.
+  int expansions() const { return scratch_; }
 
   /// Returns the index of the remainder of a set. For a set that was not expanded, the index is valid until the next
   /// call.

@@ -68,7 +68,7 @@ class Panels {
     }
   }
 
-  /// Adds a row without values.
+  /// Adds a row whose values are not initialised.
   void extend() {
     if (rows_ == capacity_) reserve(std::max(16, 2 * capacity_));
     ++rows_;

@@ -144,7 +144,7 @@ int PosteriorMaps::variances_clamped() const {
   read_raw_variance(variance);
   Eigen::Index clamped = 0;
   with_prior([&](const auto& prior) {
-    // A value above the prior by rounding in the last place does not count. Any value below 0 counts.
+    // A value that exceeds the prior only by rounding in the last place does not count. Any value below 0 counts.
     clamped = (variance.array() < 0.0 || variance.array() > prior * (1.0 + 4.0 * kEpsilon)).count();
   });
   return static_cast<int>(clamped);

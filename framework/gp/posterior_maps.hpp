@@ -23,7 +23,7 @@ struct UnknownMean {
 struct FactoredTaps {
   Factor& factor;           ///< Cholesky factor L of the covariance of the taps
   const Points& positions;  ///< one row per tap, with reserved rows at the end
-  /// L^-1 B; B: standardised targets, one column per output, and a column of ones if the mean is unknown.
+  /// L^-1 B. B contains the standardised targets, one column per output, and a column of ones if the mean is unknown.
   const Eigen::MatrixXd& solved;
   double noise;                        ///< standard deviation of noise and jitter, in units of the signal
   std::optional<UnknownMean> unknown;  ///< absent if the mean is known
@@ -42,13 +42,13 @@ struct EngineReport {
   ///     c_i    rows of L^-1
   ///     s      noise, jitter included
   ///     alpha  L^-T L^-1 targets
-  /// An unknown mean adds a term to each of both values.
+  /// An unknown mean adds a term to each of these two values.
   double error_bound;
 };
 
-/// MapTiles over the candidates, which are updated once for each row of a factor, unless the maps restart. An unknown
-/// mean allows only one output, and needs one more map: V^T L^-1 1, the part of the constant that the taps explain. The
-/// functions that read maps resize `out` to the number of candidates.
+/// Maps over the candidates (MapTiles). Each row of the factor updates the maps once. After a restart, the maps are
+/// computed again from all rows. An unknown mean allows only one output, and needs one more map: V^T L^-1 1, the part
+/// of the constant that the taps explain. The functions that read maps resize `out` to the number of candidates.
 class PosteriorMaps {
  public:
   /// `kernel` and `candidates` must outlive the maps. Throws Error if there is an objection() to `settings`.
@@ -64,16 +64,17 @@ class PosteriorMaps {
   void reserve(int taps);
   /// Computes the prior and chooses an engine for the present hyperparameters of the kernel. Restarts the maps.
   void take_hyperparameters();
-  /// Restarts the maps, because the rows of the factor change.
+  /// Restarts the maps. Must be called if rows of the factor have changed.
   void restart() { rows_ = kNoRows; }
-  /// Keeps maps of the means of the outputs 0 to `outputs` - 1. Restarts the maps if there were fewer.
+  /// Keeps maps of the means of the outputs 0 to `outputs` - 1. Restarts the maps if fewer maps were kept before.
   void show(int outputs);
   int shown() const { return shown_; }
 
   /// Updates the maps with the rows that they do not contain yet. With the engine type `automatic`, an engine that is
   /// not accurate enough is replaced.
   void update(const FactoredTaps& taps);
-  /// Returns whether the maps contain this number of rows. The functions below require that they contain all rows.
+  /// Returns whether the maps contain this number of rows. The functions below require maps that contain all rows of
+  /// the factor.
   bool have_rows(int rows) const { return rows_ == rows; }
 
   EngineReport engine() const { return {choice_.engine->name(), choice_.reason, error_bound()}; }

@@ -21,8 +21,8 @@ constexpr double kBroadSignal = 0.5;
 constexpr double kBroadScale = 2.5;
 /// Noise, as a share of the signal, below which heights of inliers may contradict a GP; see update().
 constexpr double kExactNoise = 0.03;
-/// Noises for the comparison in update(), as shares of the signal. The largest is about the misfit of a kernel that is
-/// much too smooth. The smallest is the noise of an exact arm.
+/// Noises for the comparison in update(), as shares of the signal. The largest noise is about the residual of a kernel
+/// that is much too smooth. The smallest noise is that of an exact arm.
 constexpr double kRoughNoises[] = {0.3, 0.06, 0.01};
 /// Natural logarithm of the evidence ratio 10, which is strong evidence (Jeffreys 1961).
 constexpr double kStrongEvidence = 2.3;

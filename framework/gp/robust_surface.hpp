@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The surface of a GP without outliers, and its maps over the candidates.
+// Computes the surface of a GP without the influence of outliers, and the maps of this surface over the candidates.
 #pragma once
 
 #include "gp/candidate_grid.hpp"
@@ -13,7 +13,7 @@ class RobustSurface {
   /// `candidates` must outlive the surface.
   explicit RobustSurface(const CandidateGrid& candidates) : candidates_(candidates) {}
 
-  /// Computes the outlier probabilities of all taps of `gp`. `prior`: prior probability of each tap to be an outlier.
+  /// Computes the outlier probabilities of all taps of `gp`. `prior`: prior probability that each tap is an outlier.
   /// `extra_variance`: variance per tap in addition to the noise; empty for none. If the GP has no noise, no tap can be
   /// an outlier, and the surface is the posterior of the GP.
   ///
@@ -27,11 +27,11 @@ class RobustSurface {
   /// Removes all taps. Must be called before update() with another GP.
   void reset();
 
-  /// Returns the posterior probability of each tap to be an outlier; the prior probability if no outlier was possible.
+  /// Returns the posterior probability that each tap is an outlier; the prior probability if no outlier was possible.
   const Eigen::VectorXd& outlier_probabilities() const { return posterior_.probability; }
   /// Returns the number of taps at the latest update().
   int taps() const { return static_cast<int>(posterior_.probability.size()); }
-  /// Returns whether the surface excludes outliers; if not, the surface is that of the GP.
+  /// Returns whether the surface excludes outliers; if not, the surface is the posterior of the GP.
   bool excludes_outliers() const { return excludes_outliers_; }
 
   /// Returns the report of the factorisations that were used: the latest jitter in the squared unit of the targets, all

@@ -14,7 +14,7 @@ namespace palpate {
 /// The calling thread and `threads` - 1 helper threads. A job is divided into parts, and each free thread takes the
 /// next part. So a job with independent parts has the same result on any number of threads. After a job, a helper polls
 /// for the next job for some time and then sleeps, because jobs often follow each other immediately. The caller never
-/// waits for a helper that has not started.
+/// waits for a helper that has not joined the job.
 class Workers {
  public:
   explicit Workers(int threads);

@@ -59,7 +59,8 @@ std::vector<std::string> parts_of(const std::string& text, char separator) {
   return boost::split(out, text, [separator](char c) { return c == separator; });
 }
 
-/// Returns for example "built with ..., the program with ...", with the first part of the stamps that differs.
+/// Returns for example "built with ..., the program with ...", with the first part in which the build stamps `theirs`
+/// and `ours` differ.
 std::string stamp_difference(const std::string& theirs, const std::string& ours) {
   const std::vector<std::string> other = parts_of(theirs, ';');
   const std::vector<std::string> own = parts_of(ours, ';');
@@ -95,7 +96,7 @@ void check_complete(const fs::path& file, const std::string& bytes) {
   if (known < EI_NIDENT) incomplete();
   constexpr char kNativeClass = sizeof(void*) == 8 ? ELFCLASS64 : ELFCLASS32;
   if (header.e_ident[EI_CLASS] != kNativeClass) return;
-  // Linkers write the section headers last, so that a file with all of them is complete.
+  // Linkers write the section headers last, so a file that contains all section headers is complete.
   const bool sections = holds(header.e_shoff, std::uint64_t{header.e_shnum} * header.e_shentsize);
   if (known < sizeof header || !sections) incomplete();
   std::vector<ElfW(Phdr)> segments(header.e_phnum);

@@ -27,7 +27,7 @@ struct PluginListing {
   std::string trouble;  ///< one line: file, failed step of loading, reason; "" for a usable library
 };
 
-/// A library of a run, for its manifest.
+/// A plugin library that a run uses, as described in the run's manifest.
 struct LoadedPlugin {
   std::string kind;
   std::string name;
@@ -56,26 +56,27 @@ class PluginHost final : public PluginSource, public PluginFactory {
   /// Returns the folders of PALPATE_PLUGIN_PATH (separated by ':'), followed by `shipped`.
   static std::vector<std::filesystem::path> search_path(const std::filesystem::path& shipped);
 
-  /// Loads <kind>/<name>.so if necessary, and no other file. Throws Error without a place if the library is missing,
-  /// with the most similar name as its hint, or if two folders have it. If the library cannot be loaded or fails a
+  /// Loads <kind>/<name>.so if necessary, and no other file. Throws Error, without a source location, if the library is
+  /// missing (the hint is the most similar name) or if two folders have it. If the library cannot be loaded or fails a
   /// check, the Error names the file, the step (such as `comparing the ABI`) and the reason.
   void describe(const std::string& kind, const std::string& name, Fields& fields) const override;
 
-  /// Throws Error for any exception of the plugin's constructor. The place of the Error is where the config chooses the
-  /// plugin, unless the plugin names another place.
+  /// Throws Error for any exception of the plugin's constructor. The source location of the Error is where the config
+  /// chooses the plugin, unless the plugin gives another location.
   std::shared_ptr<void> create(const PluginChoice& choice, const Context& context) const override;
 
   /// Throws Error as create() does.
   std::shared_ptr<const Motions> motions(const PluginChoice& choice, const Scene& scene) const override;
 
-  /// Returns all libraries, including broken ones, sorted, with each name once. `kind` and `name` may be "" for all.
+  /// Returns all libraries of `kind` and `name`, sorted, including broken libraries; each name occurs once. `kind` and
+  /// `name` may be "" for all.
   std::vector<PluginListing> list(const std::string& kind, const std::string& name) const;
 
   /// Returns the sorted names of a kind, including plugins that are not built yet. Opens no library.
   std::vector<std::string> names(const std::string& kind) const;
 
-  /// Returns file and hash of the library of each of these plugins, in their order, and loads it if necessary. Plugins
-  /// that the program itself contains are left out. Throws Error.
+  /// Returns file and hash of each plugin's library, in the order of `plugins`. Loads the libraries if necessary.
+  /// Plugins that the program itself contains are left out. Throws Error.
   std::vector<LoadedPlugin> loaded(const PluginNames& plugins) const;
 
   /// Returns whether one of these plugins moves a device that only one run can use at a time, such as an arm. Loads the

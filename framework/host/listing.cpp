@@ -23,7 +23,7 @@ namespace {
 
 constexpr double kLoadSeconds = 5.0;  ///< s
 
-// Exit statuses of the child process, unless the library ends it.
+// Exit statuses of the child process, unless the library itself ends the process.
 constexpr int kSound = 100;
 constexpr int kBroken = 101;
 

@@ -22,8 +22,8 @@
 namespace palpate {
 namespace {
 
-/// The error of a plugin that reads a quantity without declaring it. It keeps the name of this plugin, even if another
-/// plugin's wrapper catches it.
+/// The error of a plugin that reads a quantity without declaring it. The error names this plugin, even if another
+/// plugin's wrapper catches the error.
 class UndeclaredReadError final : public Error {
  public:
   using Error::Error;
@@ -163,8 +163,8 @@ class WrappedKernel final : public Wrapper<Kernel> {
   }
 
  private:
-  /// During a fit, hyperparameters outside of these bounds may give results that are not finite. The fit itself then
-  /// rejects them.
+  /// During a fit, hyperparameters outside of these bounds may give results that are not finite. The fit itself rejects
+  /// such hyperparameters.
   static constexpr double kLeast = 1e-12;
   static constexpr double kMost = 1e12;
 
@@ -230,7 +230,8 @@ class WrappedFootprint final : public Wrapper<Footprint> {
   std::string remark() const override { return call(&Footprint::remark); }
 };
 
-/// The checks copy no values, because a reference to the values of a belief stays valid until the next tap.
+/// The checks return references to the plugin's values and make no copies, because these references must stay valid
+/// until the next tap.
 class WrappedBelief final : public Wrapper<Belief> {
  public:
   using Wrapper::Wrapper;

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kPollSeconds = 0.5;
 
-/// Returns whether the sweep's folder is gone. An error of the file system does not count.
+/// Returns whether the sweep's folder no longer exists. Returns false if the file system reports an error.
 bool is_gone(const Sweep& sweep) {
   std::error_code trouble;
   return !std::filesystem::exists(sweep.directory / "manifest.jsonl", trouble) && !trouble;

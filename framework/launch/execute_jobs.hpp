@@ -38,24 +38,24 @@ struct JobStates {
   std::vector<FailedJob> failures;  ///< failed jobs; like `open`, in the order of the jobs
 };
 
-/// The further checks of read_job_states(). `missing_files`: a done job without all its files, as after a power cut,
-/// counts as open. `running`: an unfinished job that a process runs counts as running.
+/// Additional checks by read_job_states(). `missing_files`: a done job that lacks some of its files, as after a power
+/// cut, counts as open. `running`: an unfinished job that a process runs counts as running.
 enum class JobCheck { nothing, missing_files, running };
 
-/// Reads the states of `jobs`. `missing_files` is reliable only if this node ran the jobs, or before any job runs,
-/// because NFS may hide files of other nodes for a minute.
+/// Reads the states of `jobs`. The check `missing_files` is reliable only if this node ran the jobs or if no job runs
+/// yet, because NFS may hide files of other nodes for a minute.
 JobStates read_job_states(const Sweep& sweep, const std::vector<std::size_t>& jobs,
                           JobCheck also = JobCheck::missing_files);
 
-/// Makes all failed jobs open again, regardless of their number of attempts.
+/// Adds all failed jobs to the open jobs, regardless of their number of attempts.
 void reopen_failed(JobStates& standing);
 
-/// Runs the open jobs with `launcher`, and waits until all have been returned. After `interrupted`, the jobs are
-/// cancelled. `progress` is called after each event and at least every half second.
+/// Runs the open jobs with `launcher`, and waits until the launcher has returned all of them (Launcher::PollResult). If
+/// `interrupted` becomes true, cancels the jobs. `progress` is called after each event and at least every half second.
 ///
 /// Returns whether all ended jobs have a record of their end and, if they ran on this machine, all their files. On a
-/// full disk, records or files may be missing. Throws Error if the sweep's directory is moved or removed meanwhile,
-/// after cancelling the jobs.
+/// full disk, records or files may be missing. If the sweep's directory is moved or removed meanwhile, cancels the jobs
+/// and throws Error.
 bool execute_jobs(Launcher& launcher, const Sweep& sweep, JobStates begun, const std::atomic<bool>* interrupted,
                   const std::function<void(const SweepProgress&)>& progress);
 

@@ -80,7 +80,7 @@ JobEnd run_job(const RunEnvironment& environment, const fs::path& directory, con
               .c_str(),
           stderr);
     }
-    // A failed job keeps its failure, also if its record is damaged.
+    // A failed job stays failed, even if its record is damaged.
     if (trouble && !failed) throw *trouble;
     return failed ? JobEnd::failed : JobEnd::done;
   }

@@ -34,15 +34,15 @@ inline constexpr const char* kBlocked = "blocked";
 /// options.retry_failed is false. An error is recorded as a failure of the job, unless the config was deleted: `palpate
 /// sweep` writes it again.
 ///
-/// Throws Error if nothing can be recorded, or if a missing file of a done job cannot be restored. Throws Error (busy)
-/// if another process uses the arm, or if the external program has changed.
+/// Throws Error if nothing can be recorded, or if a missing file of a done job cannot be restored. Throws Error of kind
+/// `busy` if another process uses the arm, or if the external program has changed.
 JobEnd run_job(const RunEnvironment& environment, const std::filesystem::path& directory, const ResumeOptions& options);
 
 /// Returns whether the job is done or has failed.
 bool has_ended(const std::filesystem::path& directory);
 
-/// Returns the number of attempts in the last series of attempts that have no `end` between them, according to the
-/// record.
+/// Returns the number of attempts in the last series of recorded attempts without an `end` between them: see
+/// attempts_in_row().
 int attempts_of(const std::filesystem::path& directory);
 
 /// Records a failure of a job whose process died, unless the job has ended or another process runs it.

@@ -27,7 +27,7 @@ class Launcher {
   struct PollResult {
     std::vector<std::size_t> returned;  ///< jobs that ended or were abandoned since the last call
     bool all_recorded = true;           ///< false: a returned job could not record its end or write its files
-    /// A job could not start, for a reason that also applies to all waiting jobs. They were dropped.
+    /// Whether a job could not start for a reason that also applies to all waiting jobs. The waiting jobs were dropped.
     bool blocked = false;
     int running = 0;  ///< number of running jobs, as far as the launcher can see
     int waiting = 0;  ///< number of waiting jobs
@@ -41,7 +41,7 @@ class Launcher {
   virtual void submit(const std::vector<std::size_t>& jobs) = 0;
 
   /// Waits for the next event, for at most `seconds`. Returns early after a signal, and at once if no job runs or
-  /// waits. Throws Error if the state of the jobs can no longer be found out.
+  /// waits. Throws Error if the state of the jobs can no longer be determined.
   virtual PollResult poll(double seconds) = 0;
 
   /// Stops running jobs after their current tap and drops waiting jobs. poll() still returns the running jobs.

@@ -123,7 +123,8 @@ void LocalLauncher::conclude(std::size_t job, const ChildProcess& process, PollR
 }
 
 void LocalLauncher::was_killed(std::size_t job, int signal, PollResult& state) {
-  // Kills before the attempt is recorded count, too. Otherwise such a job would start again forever.
+  // A kill before the attempt is recorded counts as an attempt, too. Otherwise such a job would be started again
+  // forever.
   const int attempts = std::max(attempts_of(directory_of(job)), ++kills_[job]);
   const std::string name = fmt::format("signal {} ({})", signal, ::strsignal(signal));
   if (is_crash(signal)) {

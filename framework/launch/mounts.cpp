@@ -58,7 +58,7 @@ bool lies_in(const fs::path& folder, const fs::path& point) {
 }  // namespace
 
 void check_shared_locks(const fs::path& folder, std::string_view mountinfo) {
-  Mount holds;  // innermost mount around the folder; with several at the same point, the last one
+  Mount holds;  // innermost mount that contains the folder; the last of several at one mount point
   std::istringstream lines{std::string(mountinfo)};
   for (std::string line; std::getline(lines, line);) {
     const std::optional<Mount> mount = read_mount(line);

@@ -14,7 +14,8 @@ int cores();
 
 /// Calls `work` for each number below `count`, in up to `workers` forked child processes, which end with this process.
 /// Calls `progress` (may be null) with the number of finished items. Returns false if `interrupted` (may be null) was
-/// set first. Throws Error (run) with the error of the first child that failed, after ending the others.
+/// set first. If a child fails, ends the other children and throws Error of kind `run` with the message of the first
+/// child that failed.
 bool in_children(std::size_t count, int workers, const std::function<void(std::size_t)>& work,
                  const std::atomic<bool>* interrupted, const std::function<void(std::size_t)>& progress);
 

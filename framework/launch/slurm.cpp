@@ -25,7 +25,7 @@ namespace {
 constexpr double kAnswerSeconds = 30.0;  ///< s
 constexpr const char* kNoClusterHint = "run this on the login node of a cluster, or leave out '--launcher slurm'";
 
-/// Returns the last number in the first group of `pattern`; nullopt if there is no match.
+/// Returns the number that the first group of `pattern` captures in the last match; nullopt if there is no match.
 std::optional<int> last_number(const std::string& text, const std::string& pattern) {
   const std::regex wanted(pattern);
   std::optional<int> out;

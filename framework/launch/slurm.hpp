@@ -39,8 +39,8 @@ struct Submission {
   std::string doubt;  ///< message of sbatch if no node can run the array now; else ""
 };
 /// Submits an array: `sbatch` with `words`. Throws Error with the message of sbatch. sbatch does not distinguish an
-/// array that can never run from an array that waits for drained nodes. Both are submitted, and `doubt` contains the
-/// message of sbatch.
+/// array that can never run from an array that waits for drained nodes. In both cases, the array is submitted, and
+/// `doubt` contains the message of sbatch.
 Submission submit(const std::vector<std::string>& words);
 
 /// Returns this user's tasks. Throws Error if squeue does not answer.

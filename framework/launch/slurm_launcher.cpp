@@ -88,8 +88,8 @@ class SlurmLauncher final : public Launcher {
     }
   }
 
-  /// Returns jobs whose records have an end, and all jobs once the queue has no task of these arrays left. Throws Error
-  /// if Slurm has not answered for ten minutes.
+  /// Returns jobs whose records have an end. If the queue contains no more tasks of the submitted arrays, returns all
+  /// remaining jobs. Throws Error if Slurm has not answered for ten minutes.
   PollResult poll(double seconds) override {
     PollResult state;
     if (open_.empty()) return state;
@@ -121,7 +121,8 @@ class SlurmLauncher final : public Launcher {
                   "rename it");
     make_inner_folder(all);
     std::error_code trouble;
-    // Another process may search for a number at the same time. The process that creates the folder gets the number.
+    // Another process may try the same number at the same time. Only the process that creates the folder gets the
+    // number.
     for (int number = 1; !trouble; ++number) {
       fs::path folder = all / std::to_string(number);
       if (fs::create_directory(folder, trouble)) return folder;
@@ -178,7 +179,8 @@ class SlurmLauncher final : public Launcher {
     });
     returned.assign(ended, open_.end());
     open_.erase(ended, open_.end());
-    // Reading many jobs from a slow file system takes long. The pause leaves most of the time to other users.
+    // Reading many jobs from a slow file system takes long. The pause is ten times as long as the reading (within
+    // limits), so most of the time is left to other users.
     next_ = Clock::now() + std::clamp<Clock::duration>(10 * (Clock::now() - begun), kPause, kMostPause);
   }
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // The launcher for clusters with Slurm. It submits job arrays; each task of an array resumes a few jobs of the sweep
 // with `palpate resume DIR --jobs`. A task reads the directory when it runs, and skips jobs that are done or that
-// another process runs. So no job runs twice, even if it is submitted several times, and the state that Slurm reports
-// is only a hint.
+// another process runs. No job therefore runs twice, even if it is submitted several times. The state that Slurm
+// reports is only a hint.
 #pragma once
 
 #include "launch/launcher.hpp"

@@ -22,8 +22,8 @@
 
 namespace palpate {
 
-/// A run in which the calling program makes the taps. Any thread that holds the GIL may call the methods. A lock lets
-/// only one thread at a time use the run.
+/// A run in which the calling program makes the taps. Any thread that holds the GIL may call the methods. A lock
+/// ensures that only one thread at a time uses the run.
 class AskTellRun {
  public:
   AskTellRun(const std::string& config, const std::vector<std::string>& overrides, const std::string& runs,
@@ -158,7 +158,8 @@ inline TapResult result_of(const std::string& outcome, std::optional<double> hei
                 "use contact, no_contact, unreachable, timeout or aborted");
   }
   TapResult out = tap_without_contact(*known, seconds, reason, ends_run);
-  // The height is only the z coordinate of the touched point. x and y follow from the line if the tap comes from above.
+  // The height is only the z coordinate of the touched point. If the tap comes from above, x and y follow from the
+  // tap's line.
   constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
   if (height) out.contact.emplace(kUnknown, kUnknown, *height);
   if (contact) out.contact.emplace((*contact)[0], (*contact)[1], (*contact)[2]);

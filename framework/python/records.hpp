@@ -44,8 +44,8 @@ inline NamedMaps maps_of(Experiment& experiment) {
   return out;
 }
 
-/// The record of a run, and its models. Any thread that holds the GIL may call the methods. A lock lets only one thread
-/// at a time use the models.
+/// The record of a run, and its models. Any thread that holds the GIL may call the methods. A lock ensures that only
+/// one thread at a time uses the models.
 class Record {
  public:
   explicit Record(const std::string& directory)
@@ -133,7 +133,7 @@ class SweepRecord {
       : SweepRecord(read_pooled({directories.begin(), directories.end()}, {})) {}
 
   std::string directory() const { return sweep_.directory.string(); }
-  /// Returns notes about whether the pooled records are comparable, one line each.
+  /// Returns notes about how the records were pooled and in what they differ, one line each.
   const std::vector<std::string>& notes() const { return notes_; }
   std::size_t size() const { return sweep_.jobs.size(); }
   const std::vector<std::string>& keys() const { return sweep_.keys; }

@@ -35,9 +35,9 @@ class CallsWithoutGil {
   bool ended() const { return ending_ && std::this_thread::get_id() != last_; }
 
   /// Waits until no other thread is in a call. The thread that ends the interpreter must call this function while it
-  /// holds the GIL. From then on, other threads that return from a call or begin one wait for the end of the process.
-  /// If a signal such as Ctrl-C arrives, throws the exception of the signal. The process then ends without waiting for
-  /// the remaining calls.
+  /// holds the GIL. From then on, any other thread that returns from a call or begins a call waits until the process
+  /// ends. If a signal such as Ctrl-C arrives, throws the exception of the signal. The process then ends without
+  /// waiting for the remaining calls.
   void end() {
     last_ = std::this_thread::get_id();
     ending_ = true;
@@ -46,8 +46,8 @@ class CallsWithoutGil {
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
       PyEval_RestoreThread(state);
       if (PyErr_CheckSignals() == 0) continue;
-      // The remaining calls must not run while exit() destroys static objects, so the process ends before exit() does
-      // this.
+      // The remaining calls must not run while exit() destroys static objects, so the process ends before exit()
+      // destroys them.
       ::on_exit([](int status, void*) { static_cast<void>(std::fflush(nullptr)), ::_exit(status); }, nullptr);
       throw pybind11::error_already_set();
     }
@@ -68,7 +68,7 @@ class CallsWithoutGil {
   friend class GilRelease;
 
   CallsWithoutGil() {
-    // The child of a fork has only the thread that forked, so only its calls count there.
+    // A forked child has only the thread that called fork(), so only the calls of this thread count in the child.
     ::pthread_atfork(nullptr, nullptr, [] { all().inside_ = depth_; });
   }
   void enter() {

@@ -33,8 +33,8 @@ Tree libraries() {
                     {"yaml-cpp", Tree::quote(PALPATE_YAML_CPP_VERSION)}});
 }
 
-/// Returns the commit, and whether the source tree differed from it. A separate file stores both, so that a commit
-/// without changes of code does not change the program.
+/// Returns the commit, and whether the source tree differed from it. A separate file, not the program, contains this
+/// information, so that a commit without changes of code does not change the program.
 Tree read_stamp(const Installation& installation) {
   const fs::path file = installation.plugins / "build.json";
   return is_there(file) ? read_json(file, FileOrigin::user) : Tree::map();

@@ -31,20 +31,21 @@ std::string host_name();
 
 extern const char* const kVersion;
 
-/// Hash of the compiled core library and of the libraries linked into it. cmake/CoreHash.cmake computes it for each
-/// program that links core.
+/// Hash of the compiled core library and of the libraries linked into it. cmake/CoreHash.cmake computes this hash for
+/// each program that links the core library.
 extern const char* const kCoreHash;
 
 /// Returns the output of `palpate --version` without the last newline: version, commit, build and compiler, one per
 /// line.
 std::string build_text(const Installation& installation);
 
-/// Returns one hash of core and of the plugins of a run, which is equal for equal code. Other plugins, commands, pages,
-/// and commits without changes of code do not change it.
+/// Returns one hash of the core library and the plugins of a run; equal code gives equal hashes. The hash does not
+/// depend on other plugins, commands, pages, or commits without changes of code.
 std::string build_hash(const PluginHost& host, const PluginNames& plugins);
 
 /// Returns the manifest's description of this program: version, commit of the last build, whether it had uncommitted
-/// changes, build hashes, compiler, instruction path, library versions, plugins and host.
+/// changes, build hashes, compiler, instruction path (the CPU instruction set in use), library versions, plugins and
+/// host.
 Tree describe_build(const Installation& installation, const PluginHost& host, const PluginNames& plugins,
                     const std::string& instruction_path);
 

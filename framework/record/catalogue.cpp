@@ -33,7 +33,7 @@ namespace {
 constexpr int kLevels = 3;
 constexpr const char* kLatest = "@latest";
 
-/// Whether a folder is a record, even a damaged one; the command reports the damage.
+/// Returns whether a folder is a record. A damaged record counts, too, so that the command reports the damage.
 bool is_record(const fs::path& folder) {
   constexpr std::array<const char*, 3> kParts{"config.yaml", "manifest.jsonl", kSummaryFile};
   return std::any_of(kParts.begin(), kParts.end(), [&](const char* part) { return is_there(folder / part); }) ||
@@ -55,7 +55,7 @@ std::pair<std::time_t, long> begun(const fs::path& directory) {
 /// Adds the records in `folder` and in `levels` levels below it; returns whether there was a record.
 bool collect_records(const fs::path& folder, int levels, Catalogue& out) {
   if (is_record(folder)) {
-    // A run that was moved aside still counts if its own path was given.
+    // A run that was moved aside counts as a record only if the user gave its own path.
     const bool aside = levels < kLevels && is_moved_aside(folder);
     aside ? void(++out.moved_aside) : out.records.push_back(folder);
     return true;
@@ -87,7 +87,7 @@ Row known_settings(const fs::path& directory) {
 }
 
 /// Returns the Error for a name that several records have. The message lists the most recent records with the settings
-/// that distinguish them, and the number of the others.
+/// that distinguish them, and the number of the remaining records.
 Error several(const std::string& words, const std::string& base, std::vector<fs::path> records) {
   constexpr std::size_t kShown = 4;
   const std::size_t all = records.size();
@@ -121,14 +121,14 @@ Error unknown(const std::string& words, const std::string& name, const fs::path&
                                : "run 'palpate list' to see all runs and sweeps");
 }
 
-/// The records that the words of a user name.
+/// The records that match the user's words.
 struct NamedRecords {
   std::string base;  ///< the words, without @latest
   bool latest = false;
   std::vector<fs::path> records;  ///< in the order of their start; empty for a path without a record
 };
 
-/// Returns the records that `words` name. Throws Error for an unknown name.
+/// Returns the records that match `words`. Throws Error for an unknown name.
 NamedRecords find_named(const std::string& words, RecordKind wanted, const fs::path& runs) {
   NamedRecords out;
   out.latest = !is_there(words) && boost::ends_with(words, kLatest);
@@ -141,7 +141,7 @@ NamedRecords find_named(const std::string& words, RecordKind wanted, const fs::p
   const bool is_slug = base.find('~') != std::string::npos && is_word && is_there(runs / base);
   const fs::path named = is_slug ? runs / base : runs / slug(base);
   records = read_catalogue(is_path ? fs::path(base) : named).records;
-  // A folder without records may have the same name as a run.
+  // A folder without records may have the same name as a run, so the runs of this name are searched, too.
   if (is_path && is_word && records.empty()) records = read_catalogue(named).records;
   if (records.empty()) {
     if (is_path || !is_word) return out;
@@ -153,7 +153,8 @@ NamedRecords find_named(const std::string& words, RecordKind wanted, const fs::p
   return out;
 }
 
-/// Returns the only record, or the last one with @latest. Throws Error for several records.
+/// Returns the only record. If there are several, returns the most recent one if `words` end in @latest, and else
+/// throws Error. If there is none, returns the path unchanged.
 fs::path only_one(const std::string& words, const NamedRecords& meant) {
   if (meant.records.empty()) return meant.base;
   if (meant.records.size() > 1 && !meant.latest) throw several(words, meant.base, meant.records);

@@ -14,16 +14,16 @@ class Checkpoint {
   /// Returns the checkpoint after `taps` taps, at least 1.
   static Checkpoint after(int taps);
 
-  /// Returns the checkpoint after the first tap at which a summary field reaches a goal, such as "rmse_m=8 mm". The
-  /// field must be one for which less or more is better. Throws Error, with the command line as its place, for any
-  /// other text.
+  /// Returns the checkpoint after the first tap at which a summary field reaches a goal, such as "rmse_m=8 mm". For
+  /// this field, lower or higher values must be defined as better. Throws Error, with the location "command line", for
+  /// any other text.
   static Checkpoint once(const std::string& text);
 
   /// Returns the number of taps; nullopt if the checkpoint depends on the results of the taps.
   std::optional<int> taps() const { return taps_; }
 
-  /// Whether the checkpoint is reached; `summary` is the summary after `taps` taps. A field that is unknown or not
-  /// finite does not reach the goal.
+  /// Returns whether the checkpoint is reached. `summary` is the summary after `taps` taps. A field that is unknown or
+  /// not finite does not reach the goal.
   bool has_come(int taps, const Row& summary) const;
 
   /// Returns the description: "after 17 taps", "once rmse_m was 8 mm or less".

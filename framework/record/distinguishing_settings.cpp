@@ -16,7 +16,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t kMostShown = 3;
-/// Limits the work: each setting is compared over all pairs of runs, and configs may differ in 100,000 values.
+/// Largest number of settings that are compared. Each setting is compared over all pairs of runs, and configs may
+/// differ in 100,000 values.
 constexpr std::size_t kMostCompared = 64;
 
 /// One setting and its values in all runs.
@@ -45,8 +46,9 @@ SettingValues setting(const std::string& name, std::vector<std::string> words, i
   return out;
 }
 
-/// Returns, for each run, its groups of this kind that at least one other run lacks, or all its groups of this kind if
-/// every run has all of them. Returns nothing if a run has no group of this kind.
+/// Returns one text per run, which lists those groups of this kind that the run has and at least one other run lacks.
+/// If there are none, the text lists all groups of this kind that the run has. Returns an empty list if a run has no
+/// group of this kind.
 std::vector<std::string> group_words(const std::vector<RecordedSettings>& runs, const std::string& kind) {
   std::map<std::string, std::size_t> counts;
   for (const RecordedSettings& run : runs) {
@@ -72,7 +74,7 @@ std::vector<SettingValues> differing_settings(const std::vector<RecordedSettings
   for (const RecordedSettings& run : runs) configs.push_back(run.values);
   std::vector<std::string> keys = differing_keys(configs);
   keys.resize(std::min(keys.size(), kMostCompared));
-  // Place a key that the first runs lack next to the other keys of its block.
+  // A key that the first runs lack is placed next to the other keys of its block.
   std::map<std::string, std::size_t> order;
   for (const Row& config : configs) {
     for (const auto& field : config.fields) order.emplace(block_of(field.first), order.size());

@@ -20,11 +20,11 @@ struct RecordedSettings {
 /// Returns the groups named in `origins`, which come from recorded_origins().
 std::map<std::string, std::set<std::string>> recorded_groups(const std::map<std::string, std::string>& origins);
 
-/// Returns up to three settings such as "scene ring" or "taps 30" for each of these runs of one name. The first setting
-/// distinguishes the run from as many other runs as possible, the second from as many of the remaining runs as
-/// possible. Settings that distinguish no further run come from blocks of the config without a setting so far. On a tie
-/// the seed comes first, and a group comes before its values. Settings that are equal in all runs, or missing in this
-/// run, are never returned.
+/// Returns up to three settings, such as "scene ring" or "taps 30", for each of `runs`, which all have the same name.
+/// The first setting distinguishes the run from as many other runs as possible, the second from as many of the
+/// remaining runs as possible. A setting that distinguishes no further run is returned only if no other returned
+/// setting is from the same block of the config. On a tie, the seed comes first, and a group comes before its values.
+/// Settings that are equal in all runs, or missing in this run, are never returned.
 std::vector<std::vector<std::string>> distinguishing_settings(const std::vector<RecordedSettings>& runs);
 
 }  // namespace palpate

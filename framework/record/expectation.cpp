@@ -42,7 +42,8 @@ std::string without_spaces(std::string text) {
   return text;
 }
 
-/// Returns the source location of the key, or that of the value if an override from another file set the value.
+/// Returns the source location of the key. If another source set the value, such as an override, returns the location
+/// of the value.
 SourceLocation place_of(const Tree::Entry& entry) {
   const SourceLocation& value = entry.value.place;
   return value.file && (!entry.place.file || *value.file != *entry.place.file) ? value : entry.place;

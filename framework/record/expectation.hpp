@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Reads `expect:` of a config: conditions on the summary of a run, or on the summaries of a sweep. The program exits
-// with 0 only if they hold. Expectations do not change the results of a run, so they are not part of its id.
-// record/gate.hpp checks them.
+// with status 0 only if all conditions hold. Expectations do not change the results of a run, so they are not part of
+// its id. record/gate.hpp checks them.
 #pragma once
 
 #include "config/relation.hpp"
@@ -33,13 +33,13 @@ struct Expectation {
   std::string place;                      ///< "file:line:column" or "command line"
 };
 
-/// Reads the map `expect:` (may be null). Its entries are KEY: COMPARISON, or KEY: [COMPARISON, ...] if all must hold.
-/// A key is `failed_runs`, a field of the summary, or STATISTIC(field). The keys of nested maps are joined by dots.
-/// Throws Error with place, reason and the nearest known name for anything else.
+/// Reads the map `expect:` (may be null). An entry is KEY: COMPARISON, or KEY: [COMPARISON, ...], where all comparisons
+/// must hold. A key is `failed_runs`, a field of the summary, or STATISTIC(field). The keys of nested maps are joined
+/// by dots. For anything else, throws Error with the source location, the reason and the most similar known name.
 std::vector<Expectation> read_expectations(const Tree* expect);
 
-/// Returns the expectations as a flat map of texts, which read_expectations() reads as the same expectations. Adds the
-/// source location of each expectation to `notes`.
+/// Returns the expectations as a flat map of texts. read_expectations() converts this map to the same expectations.
+/// Adds the source location of each expectation to `notes`.
 Tree resolved_expect(const Tree& expect, ResolveNotes& notes);
 
 /// Returns the names of the statistics: mean, median, min, max, p5, ...

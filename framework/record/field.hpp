@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The field list of a record, similar to the field list of an options struct. It defines each field once: name, unit,
-// meaning, better direction, and reason for a missing value. All code that writes, reads, judges, compares, draws or
-// documents the record uses this list.
+// meaning, better direction, and reason for a missing value. All code that writes, reads, checks, compares, draws or
+// documents the fields of a record uses this list.
 //
 //     FieldList<Summary> list;
 //     list.add("taps", "all taps, failed ones included", [](const Summary& s) { return s.result.taps; }).less();
@@ -33,11 +33,12 @@ struct RecordField {
   RecordField& more() { return better = Better::more, *this; }
   /// Sets the reason why a successful run or tap can lack a value.
   RecordField& absent(std::string reason) { return when_null = std::move(reason), *this; }
-  /// Marks a measurement of time, memory or machine, which changes when the same run is repeated.
+  /// Marks a measured time or memory, or a property of the machine. Its value may change when the same run is repeated.
   RecordField& measured() { return of_machine = true, *this; }
   /// Sets the name shown on pages and in tables.
   RecordField& called(std::string words) { return label = std::move(words), *this; }
-  /// Marks an important field, which is shown even where space is limited. Such fields keep the order of the list.
+  /// Marks an important field, which is shown even where space is limited. Marked fields are shown in the order of the
+  /// list.
   RecordField& headline() { return first_look = true, *this; }
 
   std::string name;     ///< dotted if nested: "compute.infer"; a family has a pattern: "height_gp.*"
@@ -79,7 +80,8 @@ class FieldList {
     return add_where([](const Record&) { return true; }, std::move(name), std::move(meaning), std::move(get));
   }
 
-  /// Adds a field that a record contains only if `has` returns true; other records lack its name too.
+  /// Adds a field that a record contains only if `has` returns true; other records lack the whole field, including its
+  /// name.
   template <class Has, class Get>
   RecordField& add_where(Has has, std::string name, std::string meaning, Get get) {
     RecordField field(std::move(name), std::move(meaning));
@@ -89,22 +91,23 @@ class FieldList {
     });
   }
 
-  /// Adds fields that several kinds of records share; `write` adds their values to a row.
+  /// Adds fields that several kinds of records have in common. `write` adds the values of these fields to a row.
   void add_shared(const std::vector<RecordField>& fields, std::function<void(Row&, const Record&)> write) {
     for (const RecordField& one : fields) insert(one, false, [](Row&, const Record&) {});
     if (!fields.empty()) entries_.back().write = std::move(write);
   }
 
-  /// Adds fields whose names depend on the record, such as those of a kernel. Documents show `pattern` for them, and
-  /// `write` adds them to a row.
+  /// Adds fields whose names depend on the record, such as those of a kernel. The documentation shows `pattern` instead
+  /// of their names, and `write` adds the fields to a row.
   RecordField& add_family(std::string pattern, std::string meaning, std::function<void(Row&, const Record&)> write) {
     return insert(RecordField(std::move(pattern), std::move(meaning)), true, std::move(write));
   }
 
-  /// Sets the function that reads the last added field back from a row.
+  /// Sets the function that reads the value of the last added field from a row.
   void read_by(std::function<void(Record&, const RowReader&)> read) { entries_.back().read = std::move(read); }
 
-  /// Returns the record of a row, filled by the fields that have a `read` function. Throws Error for a damaged cell.
+  /// Returns the record that is stored in a row. Only fields with a `read` function (see read_by()) are read. Throws
+  /// Error for a damaged cell.
   Record read(const RowReader& row) const {
     Record out;
     for (const Entry& one : entries_) {

@@ -119,8 +119,8 @@ std::string words(const std::vector<RelabelledContact>& relabelled) {
   return out;
 }
 
-/// Adds the fields for the state of the models, which taps and results share. All names with a dot are written as the
-/// belief reports them, in its order.
+/// Adds the fields for the state of the models, which taps and run results have in common. Fields whose names contain a
+/// dot are written as the belief reports them, in the order of the belief.
 template <class Record>
 void list_models(FieldList<Record>& list) {
   const auto family = [&](const char* pattern, const char* meaning) {
@@ -164,7 +164,7 @@ std::optional<double> if_contact(const TapRecord& tap, double value) {
 const std::vector<const char*> kSources{"initial", "acquisition", "fallback", "caller"};
 const std::vector<const char*> kOutcomes{"contact", "no_contact", "unreachable", "timeout", "aborted", "unknown"};
 
-/// Adds the fields for the line of the tool and for the result along this line.
+/// Adds the fields for the line along which the tool moves, and for the result along this line.
 void list_line(FieldList<TapRecord>& list) {
   using Tap = TapRecord;
   const auto of_line = [&](const char* name, const char* meaning, auto get, Unit unit) {
@@ -365,7 +365,7 @@ constexpr std::array<const char*, kPhases> kPhaseMeanings{"in the backend", "fit
 
 bool is_from_any_side(const Summary& summary) { return !summary.from_above; }
 
-/// Whether later taps can change the label of a contact.
+/// Returns whether later taps can change the label of a contact.
 bool is_read_again(const Summary& summary) {
   return !belief_option(summary.config.options, "height.offset").empty() || is_from_any_side(summary);
 }
@@ -385,8 +385,8 @@ std::optional<int> count_objects(const Summary& summary, Holds holds) {
   return static_cast<int>(std::count_if(summary.objects->begin(), summary.objects->end(), holds));
 }
 
-/// Returns the result of `sum_up` for the values of a measure over all objects that have one; nullopt if no object has
-/// one.
+/// Applies `sum_up` to the values of a measure for all objects that have a value, and returns the result; nullopt if no
+/// object has a value.
 template <class SumUp>
 std::optional<double> over_objects(const Summary& summary, std::optional<double> ObjectErrors::*value, SumUp sum_up) {
   std::vector<double> values;

@@ -28,7 +28,7 @@ struct Summary : RunResult {
   std::optional<std::int64_t> peak_rss_bytes;
 };
 
-/// Name of the field with the RMSE that the final models of a run expect.
+/// Name of the field with the expected RMSE according to the final models of a run.
 inline constexpr const char* kExpectedError = "expected_rmse_m";
 
 /// Wall time of one tap in each phase, as in its line `timing`.
@@ -63,10 +63,10 @@ const RecordField* find_summary_field(const std::string& name);
 /// columns, the end of the name defines it: `_m` or `_seconds`.
 Unit unit_of_column(const std::string& name);
 
-/// Whether a field of the summary depends on clock, memory or machine rather than on the config.
+/// Returns whether a field of the summary depends on time, memory or machine and not only on the config.
 bool depends_on_machine(const std::string& name);
 
-/// Whether a field of a tap or of the summary has a value only where the truth is known.
+/// Returns whether a field of a tap or of the summary has a value only if the truth is known.
 bool needs_truth(const std::string& name);
 
 // Taps as lines of record.jsonl and rows of taps.csv.
@@ -75,12 +75,13 @@ bool needs_truth(const std::string& name);
 Row tap_row(const TapRecord& tap);
 /// Returns the row of a tap before it is made: its first field is `intent`, and its result is null or left out.
 Row intent_row(const TapRecord& tap);
-/// Returns the row of a tap with an unknown result, made from the row of its intent.
+/// Converts the row of an announced tap (`intent`) to the row of a tap with an unknown result.
 Row unknown_result_of(const Row& intent);
-/// Returns the taps of recorded rows with the data that a resumed run needs, without state and errors. Throws Error,
-/// naming `file` and the tap, for a damaged row.
+/// Returns the taps in recorded rows. The taps contain the data that a resumed run needs, without the models' states
+/// and the errors. Throws Error, naming `file` and the tap, for a damaged row.
 std::vector<TapRecord> read_taps(const std::vector<Row>& rows, const std::filesystem::path& file);
-/// Returns whether the contact of a row is on an object according to the labels in `counts`; nullopt without a contact.
+/// Returns whether, according to the labels in `counts`, the contact of a row is on an object; nullopt without a
+/// contact.
 std::optional<bool> label_now(const Row& row, const RunResult& counts);
 
 const char* outcome_name(Outcome outcome);
@@ -98,7 +99,7 @@ std::vector<RelabelledContact> relabelled_in(const Row& summary);
 /// the summaries have only the latter (taps from any side).
 std::string main_error(const std::vector<Row>& summaries);
 
-/// Adds the errors to a row, null where the truth is not known. errors_in() reads them back.
+/// Adds the errors to a row; they are null if the truth is not known. errors_in() reads them from a row.
 void add_errors(Row& row, const Errors& errors);
 Errors errors_in(const Row& row);
 

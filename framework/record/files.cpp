@@ -29,14 +29,15 @@ Error failed(const fs::path& file, const char* action) {
 
 [[noreturn]] void fail(const fs::path& file, const char* action) { throw failed(file, action); }
 
-/// Opens a file with a descriptor above those of the standard streams. If the process was started without these
-/// streams, the file would otherwise become one of them.
+/// Opens a file with a descriptor above those of the standard streams. Otherwise, if the process was started without
+/// these streams, the file would become one of them.
 Descriptor open_file(const fs::path& file, int flags) {
-  // O_NONBLOCK: if the path is a pipe, do not wait for the process at its other end.
+  // If the path is a pipe, O_NONBLOCK avoids waiting for the process at its other end.
   return above_standard(::open(file.c_str(), flags | O_CLOEXEC | O_NONBLOCK | O_NOCTTY, 0666));
 }
 
-/// Opens a file for writing; fails for a link, whose author could otherwise choose the file that is overwritten.
+/// Opens a file for writing. Fails if the path is a link, because the author of the link could choose which file is
+/// overwritten.
 Descriptor open_to_write(const fs::path& file, int flags) {
   Descriptor opened = open_file(file, flags | O_NOFOLLOW);
   if (opened) return opened;
@@ -44,14 +45,14 @@ Descriptor open_to_write(const fs::path& file, int flags) {
   fail(file, "cannot be opened");
 }
 
-/// The lock belongs to the open file, not to the process: a second lock in the same process fails too. A process can
-/// test for a lock without taking it.
+/// Argument of fcntl() for a lock that belongs to the open file and not to the process, so a second lock in the same
+/// process fails, too. A process can test for such a lock without taking it.
 const struct flock kWholeFile { F_WRLCK, SEEK_SET, 0, 0, 0 };
 
 Descriptor open_lock(const fs::path& file) { return open_to_write(file, O_RDWR | O_CREAT | O_APPEND); }
 
-/// Duplicates the descriptor and closes the copy. Linux passes all written data to the file system at each close, and
-/// the original descriptor keeps its lock.
+/// Duplicates the descriptor and closes the copy. At each close, Linux passes all written data to the file system. The
+/// original descriptor keeps its lock.
 bool flush_file(const Descriptor& file) {
   const int copy = ::fcntl(file.number(), F_DUPFD_CLOEXEC, STDERR_FILENO + 1);
   return copy >= 0 && ::close(copy) == 0;
@@ -59,8 +60,8 @@ bool flush_file(const Descriptor& file) {
 
 void sync_folder(const fs::path& folder) {
   const Descriptor opened = open_file(folder, O_RDONLY | O_DIRECTORY);
-  if (!opened && errno == EACCES) return;  // another user's folder: this process did not make it
-  // Errors of file systems that cannot sync folders (EINVAL) or are read-only (EROFS).
+  if (!opened && errno == EACCES) return;  // the folder of another user, which this process did not make
+  // These errors are ignored: the file system cannot sync folders (EINVAL) or is read-only (EROFS).
   const auto needs_none = [] { return errno == EINVAL || errno == EROFS; };
   if (!opened || (::fsync(opened.number()) != 0 && !needs_none())) fail(folder, "cannot be synced");
 }
@@ -88,7 +89,7 @@ void remove_temporaries_once(const fs::path& folder) {
   remove_temporaries(folder);
 }
 
-/// Whether this errno means that the path does not exist or that this user may not access it.
+/// Returns whether the errno `reason` means that the path does not exist or that this user may not access it.
 bool shows_nothing(int reason) {
   return reason == ENOENT || reason == ENOTDIR || reason == EACCES || reason == ELOOP || reason == ENAMETOOLONG;
 }
@@ -97,7 +98,7 @@ std::optional<std::string> text_in(FileReading reading, const fs::path& file, st
   if (reading) return std::move(reading.text);
   const int reason = reading.reason.value();
   if (reading.kind == FileReading::Kind::absent && reason == ENOENT) return std::nullopt;
-  // Too few descriptors or too little memory do not mean that the file is missing.
+  // Other errors, such as too few descriptors or too little memory, do not mean that the file is missing.
   const bool fails = reason != 0 && !shows_nothing(reason);
   if (reason != 0 && !fails && !is_there(file)) return std::nullopt;
   const auto [words, remedy] = words_of(reading, most_bytes);
@@ -123,8 +124,8 @@ TemporaryFile::TemporaryFile(const fs::path& file) : file_(file) {
     if (!descriptor_ && errno == EEXIST) continue;
     if (!descriptor_) fail(file, "cannot be made");
     path_ = path;
-    // Another process may have removed the temporary file before it was locked. Without file locks no process removes
-    // it.
+    // Another process may have removed the temporary file before it was locked. If the file system has no locks, no
+    // process removes the file.
     const bool taken = ::fcntl(descriptor_.number(), F_OFD_SETLK, &kWholeFile) != 0 && errno == EAGAIN;
     struct stat what {};
     if (!taken && ::fstat(descriptor_.number(), &what) != 0) fail(file, "cannot be made");
@@ -299,7 +300,7 @@ FileLock FileLock::wait_for(const fs::path& file) { return FileLock(file, F_OFD_
 
 FileLock& FileLock::operator=(FileLock&& other) noexcept {
   file_.swap(other.file_);
-  descriptor_ = std::move(other.descriptor_);  // this assignment swaps
+  descriptor_ = std::move(other.descriptor_);  // swaps the descriptors
   folder_ = std::move(other.folder_);
   std::swap(owner_, other.owner_);
   return *this;

@@ -21,7 +21,7 @@ namespace palpate {
 
 /// Writes `text` to a temporary file, closes it and renames it to `file`. Readers see the old or the new content, never
 /// a part; if `file` is a link, the link is replaced. With `sync`, the content and the name of the file are on the disk
-/// on return. Throws Error; `file` is then unchanged, unless only the sync of its folder failed.
+/// when the function returns. Throws Error; `file` is then unchanged, unless only the sync of its folder failed.
 void write_file(const std::filesystem::path& file, const std::string& text, bool sync = false);
 
 /// A locked temporary file that publish() renames to its final name `file`. It is created empty next to `file`, as
@@ -44,18 +44,19 @@ class TemporaryFile {
   Descriptor descriptor_;
 };
 
-/// Removes the temporary files in `folder` that no process holds locked: their writers were killed.
+/// Removes those temporary files in `folder` that no process has locked, because the processes that wrote them were
+/// killed.
 void remove_temporaries(const std::filesystem::path& folder);
 
 /// Syncs the directory entries of `folder`, and of each folder above it, to the disk. Throws Error.
 void sync_names(const std::filesystem::path& folder);
 
-/// Whether `path` exists and this user may access it. Throws Error if the file system fails.
+/// Returns whether `path` exists and this user may access it. Throws Error if the file system fails.
 bool is_there(const std::filesystem::path& path);
 /// Returns the size of `path` in bytes; nullopt if is_there() is false.
 std::optional<std::uintmax_t> size_if_there(const char* path);
 
-/// Throws Error if `path`, a part of a record, is a link: another user could have chosen its target.
+/// Throws Error if `path`, a part of a record, is a link, because another user could have chosen the link's target.
 void refuse_link(const std::filesystem::path& path);
 
 /// Makes `folder` if it does not exist, and returns it. Throws Error.
@@ -73,14 +74,14 @@ std::string read_file(const std::filesystem::path& file, std::uintmax_t most_byt
 std::optional<std::string> read_if_there(const std::filesystem::path& file, std::uintmax_t most_bytes = kMostLogBytes,
                                          FileOrigin origin = FileOrigin::record);
 
-/// Returns the first line of a file that grows by lines, without its line end, and reads only the beginning of the
+/// Returns the first line, without its line end, of a file that grows by whole lines. Reads only the beginning of the
 /// file. Returns nullopt if there is no file or no complete line. Throws Error as read_if_there() does.
 std::optional<std::string> first_line_if_there(const std::filesystem::path& file);
 
-/// The last complete line of a file that grows by lines.
+/// The last complete line of a file that grows by whole lines.
 struct LastLine {
   std::uintmax_t bytes = 0;  ///< size of the file
-  /// bytes of all complete lines; the rest of the file is a line that a kill or a full disk cut off
+  /// number of bytes of all complete lines; any further bytes are a line that a kill or a full disk cut off
   std::uintmax_t whole = 0;
   std::string text;  ///< the last complete line, without its line end; "" if there is none
 };
@@ -96,16 +97,17 @@ class AppendFile {
   /// Opens `file`, or makes it if it does not exist. Throws Error.
   explicit AppendFile(const std::filesystem::path& file);
 
-  /// Appends `text` with one system call; with `sync` the text is on the disk on return. Throws Error; a part of the
-  /// text that was written is then removed again. If this removal, a sync or flush() fails, each further call of
-  /// append() and flush() throws the same Error: the kernel has dropped the data, and a second sync would report
-  /// success.
+  /// Appends `text` with one system call. With `sync`, the text is on the disk when the function returns. If the file
+  /// cannot be written, removes the part of the text that was written, and throws Error. If this removal, a sync or
+  /// flush() fails, all later calls of append() and flush() throw the same Error. The reason is that the kernel has
+  /// then dropped the data, and a second sync would report success.
   void append(const std::string& text, bool sync);
 
   /// Truncates the file to its first `bytes`. Throws Error.
   void cut(std::uintmax_t bytes) const;
 
-  /// Passes all appended data to the file system, as close() does; NFS reports a full quota only then. Throws Error.
+  /// Passes all appended data to the file system, as close() does, because NFS reports a full quota only at this point.
+  /// Throws Error.
   void flush();
 
  private:
@@ -117,36 +119,36 @@ class AppendFile {
   std::optional<Error> failure_;  ///< error of an earlier call; append() and flush() throw it again
 };
 
-/// A lock of the kernel on a file. The destructor releases it. Without the destructor, for example after a kill, the
-/// lock ends once the process and all children that it forked while it held the lock have ended. Programs that these
-/// processes start do not inherit the lock. The lock also works between machines if their file system has locks (NFS;
-/// Lustre mounted with `flock`).
+/// A lock of the kernel on a file. The destructor releases it. If the destructor does not run, for example after a
+/// kill, the lock ends when the process has ended, and all children that it forked while it held the lock. Programs
+/// that these processes start do not inherit the lock. The lock also works between machines if their file system has
+/// locks (NFS; Lustre mounted with `flock`).
 class FileLock {
  public:
   FileLock() = default;
-  /// Makes `file` if it does not exist, and locks it. Throws Error of kind `busy` if another process holds it.
+  /// Makes `file` if it does not exist, and locks it. Throws Error of kind `busy` if another process has locked it.
   explicit FileLock(const std::filesystem::path& file);
   FileLock(FileLock&& other) noexcept { *this = std::move(other); }
   FileLock& operator=(FileLock&& other) noexcept;
   /// Releases the lock; in a forked child the file stays locked until the process that took the lock releases it.
   ~FileLock();
 
-  /// Throws Error if another process may hold the lock now. This is so in a forked child, and if the folder no longer
-  /// contains the locked file under its name. A move of the folder itself is not an error.
+  /// Throws Error if another process may hold the lock now: in a forked child, or if the folder no longer contains the
+  /// locked file under its name. Moving the folder itself is not an error.
   void check() const;
 
   /// Throws Error as check() does. Also throws if the path given to the constructor no longer leads to the locked file,
   /// because writing by path would then change other files.
   void check_in_place() const;
 
-  /// Returns the locked file for appending. A file opened separately would not be protected by the lock.
+  /// Returns the locked file for appending. The lock does not protect a file that is opened separately.
   AppendFile append_file() const;
 
   /// Makes `file` if it does not exist, and waits until it can lock the file. Throws Error.
   static FileLock wait_for(const std::filesystem::path& file);
 
-  /// Whether some process holds the lock of `file` now. This check does not disturb a process that is about to take the
-  /// lock. Throws Error if the file system fails.
+  /// Returns whether some process holds the lock of `file` now. This check does not disturb a process that is about to
+  /// take the lock. Throws Error if the file system fails.
   static bool is_held(const std::filesystem::path& file);
 
  private:
@@ -158,8 +160,8 @@ class FileLock {
   int owner_ = 0;  ///< id of the process that took the lock
 };
 
-/// Throws Error if the file system of the existing folder `folder` has no locks: two processes could then do the same
-/// work.
+/// Throws Error if the file system of the existing folder `folder` has no locks, because two processes could then do
+/// the same work.
 void check_locks(const std::filesystem::path& folder);
 
 }  // namespace palpate

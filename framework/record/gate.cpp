@@ -58,7 +58,7 @@ std::string absence(const Expectation& one, const RunOutcome& run) {
   return reason.empty() ? fmt::format("the summary has no {}", one.field) : reason;
 }
 
-/// Judges one run by a field of its summary.
+/// Compares a field of one run's summary with the expectation.
 ExpectationResult judge_run(const Expectation& one, const RunOutcome& run) {
   const RecordField* field = find_summary_field(one.field);
   if (field != nullptr && field->type == RecordField::Type::text) {
@@ -71,8 +71,8 @@ ExpectationResult judge_run(const Expectation& one, const RunOutcome& run) {
   return {one, satisfies(value, one.comparison, one.bound), shown(one, *value)};
 }
 
-/// Judges each run separately. The verdict names the first run that misses the expectation, and the number of such
-/// runs.
+/// Checks each run separately. The result names the first run that does not meet the expectation, and the number of all
+/// runs that do not meet it.
 ExpectationResult judge_each(const Expectation& one, const std::vector<RunOutcome>& runs) {
   int missed = 0;
   std::string got;
@@ -88,7 +88,7 @@ ExpectationResult judge_each(const Expectation& one, const std::vector<RunOutcom
 
 double statistic_of(const Expectation& one, const std::vector<double>& sorted) {
   if (one.statistic == Statistic::quantile) return quantile(sorted, one.share);
-  // With infinite values the mean is infinite; mean_of() requires finite ones.
+  // If a value is infinite, the mean is infinite. mean_of() requires finite values.
   if (!std::isfinite(sorted.front())) return sorted.front();
   if (!std::isfinite(sorted.back())) return sorted.back();
   return mean_of(sorted);
@@ -101,8 +101,8 @@ std::string seeds_words(const std::vector<RunOutcome>& runs) {
   return seeds.size() > 1 ? fmt::format(" over {} seeds", seeds.size()) : std::string();
 }
 
-/// Judges a statistic over all runs. A run without a value counts as the worst possible value; for `==` the statistic
-/// must hold with -infinity and with +infinity.
+/// Checks a statistic over all runs. A run without a value counts as the worst possible value. For `==`, the
+/// expectation must hold both with -infinity and with +infinity in place of missing values.
 ExpectationResult judge_statistic(const Expectation& one, const std::vector<RunOutcome>& runs) {
   std::vector<double> values;
   std::vector<const RunOutcome*> without;
@@ -182,7 +182,7 @@ std::string verdict_line(const ExpectationResult& verdict) {
 std::vector<TestCase> test_cases(const std::string& suite, const std::vector<RunOutcome>& runs,
                                  const std::vector<ExpectationResult>& verdicts) {
   std::vector<TestCase> cases;
-  // If `failed_runs` is fulfilled, failed runs do not fail the suite.
+  // If the expectation of `failed_runs` is met, failed runs do not make the suite fail.
   const bool tolerated = std::any_of(verdicts.begin(), verdicts.end(), [](const ExpectationResult& one) {
     return one.expectation.field == kFailedRuns && one.holds;
   });

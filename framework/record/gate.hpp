@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Compares the summaries of one run, or of all jobs of a sweep, with the expectations of their config. Writes the
-// results as JUnit XML, too.
+// Compares the summary of one run, or the summaries of all jobs of a sweep, with the expectations of their config. Also
+// writes the results as JUnit XML.
 #pragma once
 
 #include "record/expectation.hpp"
@@ -28,9 +28,9 @@ struct ExpectationResult {
   std::string got;  ///< "11", "3.2 cm in job 4", "no value: ..."
 };
 
-/// Judges `runs` (at least one). An expectation of a field must hold in every run. In a statistic, a run that failed or
-/// has no finite value counts as the worst possible value. If the runs have different seeds, the verdict contains the
-/// number of seeds. `failed_runs` is the number of runs that failed.
+/// Checks the expectations for `runs` (at least one run). An expectation about a field must hold in every run. In a
+/// statistic, a run that failed or has no finite value counts as the worst possible value. If the runs have different
+/// seeds, the verdict contains the number of seeds. `failed_runs` is the number of runs that failed.
 std::vector<ExpectationResult> judge(const std::vector<Expectation>& expectations, const std::vector<RunOutcome>& runs);
 
 /// Returns a line such as "file:line:column: expected median(object_taps) >= 12, got 11".

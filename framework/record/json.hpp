@@ -22,7 +22,7 @@ namespace palpate {
 /// name.
 std::optional<Row> parse_json_row(const std::string& text, std::string* reason = nullptr);
 
-/// Returns the objects of a list; items that are not objects, or that exceed the limits of parse_json_row(), are left
+/// Returns the objects in a list. Items that are not objects or that exceed the limits of parse_json_row() are left
 /// out.
 std::vector<Row> rows_of(const JsonList& list);
 std::vector<Row> rows_of(const Tree& list);
@@ -30,7 +30,7 @@ std::vector<Row> rows_of(const Tree& list);
 /// Returns rows as a list of objects.
 JsonList list_of(const std::vector<Row>& rows);
 
-/// Reads the lines of a file, which contain one JSON object each, and limits the number of all lines and values.
+/// Reads the lines of a file with one JSON object per line, and limits the total number of lines and values.
 class JsonLinesReader {
  public:
   explicit JsonLinesReader(std::filesystem::path file) : file_(std::move(file)) {}
@@ -51,9 +51,9 @@ class JsonLinesReader {
   std::size_t values_ = 0;
 };
 
-/// Calls `use` with each object of a file that has one object per line. A last line without a line end was cut off by a
-/// kill and is skipped. Returns the number of bytes of all complete lines. Throws Error for a complete line that is not
-/// an object.
+/// Calls `use` with each object of a file that has one object per line. If the last line has no line end, a kill has
+/// cut it off, and it is skipped. Returns the number of bytes of all complete lines. Throws Error for a complete line
+/// that is not an object.
 std::uintmax_t read_json_lines(const std::filesystem::path& file, const std::function<void(Row)>& use);
 
 /// Returns the JSON object in a file of at most 64 MiB and 100 levels. A file written by to_json() gives the same tree

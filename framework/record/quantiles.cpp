@@ -10,9 +10,9 @@ namespace palpate {
 double mean_of(const std::vector<double>& values) {
   if (values.empty()) return 0.0;
   const auto [least, most] = std::minmax_element(values.begin(), values.end());
-  // Do not sum equal values: rounding errors could change the value.
+  // Equal values are not summed, because rounding errors could change the mean.
   if (*least == *most) return *least;
-  // Add value/n instead of dividing the sum by n, because the sum could overflow.
+  // The terms are value/n, because the sum of the values could overflow.
   const auto n = static_cast<double>(values.size());
   return std::accumulate(values.begin(), values.end(), 0.0, [n](double sum, double one) { return sum + one / n; });
 }
@@ -21,7 +21,7 @@ double quantile(const std::vector<double>& sorted, double share) {
   const double at = share * static_cast<double>(sorted.size() - 1);
   const auto below = static_cast<std::size_t>(at);
   const double part = at - static_cast<double>(below);
-  // Avoid infinity times zero for an infinite neighbour with weight zero.
+  // This avoids infinity times zero if the neighbour with weight zero is infinite.
   if (part == 0.0 || sorted[below] == sorted[below + 1]) return sorted[below];
   return (1.0 - part) * sorted[below] + part * sorted[below + 1];
 }

@@ -45,12 +45,13 @@ std::optional<Ending::EndKind> how_of(const Row& end) {
   return static_cast<Ending::EndKind>(found - kEndKinds.begin());
 }
 
-/// Whether a name is that of a file in the record's own folder, so that a manipulated record cannot name other files.
+/// Returns whether a name is a file name without a folder, so that a manipulated record cannot refer to files outside
+/// its own folder.
 bool is_plain_name(const std::string& name) {
   return !name.empty() && name != "." && name != ".." && name.find('/') == std::string::npos;
 }
 
-/// Returns the ending in a line; nullopt if it lacks a valid `end` or names a file in another folder.
+/// Returns the ending in a line. Returns nullopt if the line has no valid `end` or refers to a file in another folder.
 std::optional<Ending> ending_of(Row line) {
   constexpr std::string_view kSummary = "summary.";
   constexpr std::string_view kFiles = "files.";
@@ -154,7 +155,7 @@ RecordLine RecordReader::read(std::string_view line) {
     lines_.skip();
     if (line.size() > kMostManifestBytes) refuse("is too long: a line has at most 64 MiB");
     const std::string text(line);
-    // Replace the place in the message of the parser, which counts lines within this line.
+    // The location in the parser's message is replaced, because the parser counts lines within this line only.
     const auto trouble = catch_error([&] { out.tree = parse_json(text, file()); });
     if (trouble)
       throw Error(lines_.place(), trouble->where() == file().string() ? trouble->reason() : "is not a JSON object",
@@ -302,8 +303,8 @@ RecordEnd read_record_end(const fs::path& directory) {
 
 int attempts_in_row(const fs::path& directory) {
   std::string text;
-  // A record that cannot be read counts as no attempts, unless the file system fails; RecordWriter reports the error
-  // later.
+  // If the record cannot be read, the number of attempts is 0, because RecordWriter reports the error later. A failure
+  // of the file system is reported here.
   const auto trouble = catch_error([&] { text = read_if_there(directory / kRecordFile).value_or(""); });
   if (trouble && trouble->kind() == Error::Kind::run) throw *trouble;
   int out = 0;

@@ -1,20 +1,21 @@
 // SPDX-License-Identifier: MIT
-// The record of a run, record.jsonl: all events in their order, one JSON object per line. It only grows. The process
-// that executes the run holds it locked. The last line records how the run ended. The first key of a line is its kind:
+// The record of a run, record.jsonl: all events in their order, one JSON object per line. The file only grows. The
+// process that executes the run keeps the file locked. The last line records how the run ended. The first key of a line
+// is its kind:
 //
 // | first key | line |
 // |---|---|
 // | manifest | program, build, config and plugins; the first line |
 // | attempt | a process starts or resumes the run, before it builds the experiment |
-// | setup | the process has built the experiment: whether taps are announced, and the readers of each model |
+// | setup | the experiment is built: whether taps are announced, and which parts of the run read each model |
 // | intent | announces a tap that cannot be repeated, before it is made |
 // | tap | a tap that was made, before the models process it |
 // | timing | times of the phases of this tap |
 // | objects | results for each object at the end |
-// | note | any other finding |
+// | note | any other observation about the run |
 // | end | how the run, or this attempt, ended |
 //
-// Laws; RecordReader checks all except the last one:
+// Rules of the format. RecordReader checks all rules except the last:
 //
 // 1. the first line is a manifest, and no other line is;
 // 2. attempts are numbered 1, 2, 3 ... and contain the number of taps so far; setup n follows attempt n, before an
@@ -85,7 +86,7 @@ class RecordReader {
   explicit RecordReader(std::filesystem::path file) : lines_(std::move(file)) {}
 
   /// Parses `line`, which has no line end. Throws Error, with file and line, if the line is not an object, is too long
-  /// or breaks a law.
+  /// or violates a rule of the format (see the beginning of this file).
   RecordLine read(std::string_view line);
 
   const std::filesystem::path& file() const { return lines_.file(); }
@@ -101,7 +102,7 @@ class RecordReader {
   void check_end(const RecordLine& line);
 
   JsonLinesReader lines_;
-  bool begun_ = false;  ///< the manifest was read
+  bool begun_ = false;  ///< whether the manifest was read
   std::int64_t attempts_ = 0;
   bool set_up_ = false;     ///< whether the last attempt has its setup
   bool announces_ = false;  ///< whether the taps of this attempt are announced
@@ -125,7 +126,7 @@ struct RunRecord {
 
   /// Returns the hash of the build that started the run; "" if it is not known.
   std::string build() const;
-  /// Whether the record contains only that the run failed before it could begin.
+  /// Returns whether the record contains only the failure of a run that could not begin.
   bool is_failure_alone() const { return manifest && manifest->find("build") == nullptr && attempts.empty(); }
 };
 
@@ -144,8 +145,8 @@ struct RecordEnd {
 /// Reads only the last complete line of a record. Throws Error if this line is damaged.
 RecordEnd read_record_end(const std::filesystem::path& directory);
 
-/// Returns the number of attempts in the last series of attempts that have no `end` between them. Does not check the
-/// lines. Throws Error if the file system fails.
+/// Returns the number of attempts in the last series of attempts without an `end` between them. For example, the result
+/// is 2 for attempt, end, attempt, attempt. Does not check the lines. Throws Error if the file system fails.
 int attempts_in_row(const std::filesystem::path& directory);
 
 /// Returns the times of the taps as a table.

@@ -58,7 +58,7 @@ void RecordWriter::clear() {
 }
 
 void RecordWriter::add_manifest(const Tree& manifest, bool sync) {
-  before();  // read the record before it has its first line
+  before();  // reads the record before its first line is written
   append(to_json_line(manifest) + "\n", sync);
   begun_ = true;
 }

@@ -34,7 +34,7 @@ void add_origins(const Tree& tree, const std::string& path, const std::vector<st
 
 RunIdentity read_identity(const fs::path& directory) {
   RunIdentity out;
-  // Other readers report a damaged manifest.
+  // A damaged manifest is ignored here, because other functions report it.
   catch_error([&] {
     const std::optional<Tree> manifest = read_manifest(directory);
     if (const Tree* name = manifest ? manifest->find("name") : nullptr) out.name = name->text;

@@ -27,13 +27,13 @@ RunIdentity read_identity(const std::filesystem::path& directory);
 Tree read_run_config(const std::filesystem::path& directory);
 
 /// Returns the source location (such as FILE:LINE:COLUMN) of each value of a run's config, by the dotted path of the
-/// value. Comments in config.yaml contain these locations as of the start of the run. Returns an empty map if
-/// config.yaml cannot be read.
+/// value. The locations are those at the start of the run; they come from the comments in config.yaml. Returns an empty
+/// map if config.yaml cannot be read.
 std::map<std::string, std::string> recorded_origins(const std::filesystem::path& directory);
 
 /// Returns the name of the group of this `kind` (such as "scene") that set values whose paths begin with `path`. If
-/// several groups did, the first value in the order of the paths decides. Returns "" if no group did. `origins` comes
-/// from recorded_origins().
+/// several groups set such values, returns the group of the first path in the order of the paths. Returns "" if no
+/// group set such a value. `origins` comes from recorded_origins().
 std::string recorded_group(const std::map<std::string, std::string>& origins, const std::string& path,
                            const std::string& kind);
 
@@ -50,13 +50,13 @@ struct RecordedRun {
   std::optional<Tree> manifest;   ///< nullopt before the start of the run
   std::optional<Row> summary;     ///< nullopt before the end of the run
 
-  /// Whether the taps were made in the scene of the config, so that the truth is known.
+  /// Returns whether the taps were made in the scene of the config, so that the truth is known.
   bool truth_known() const { return rows.front().flag("true_on_object").has_value(); }
-  /// Whether the taps came from any side, so that the surface is closed; else they came from above.
+  /// Returns whether the taps came from any side, so that the surface is closed. Otherwise the taps came from above.
   bool is_any_side() const { return !taps.empty() && !taps.front().request.line.from_above; }
-  /// Whether the run ended because it could not continue.
+  /// Returns whether the run ended because it could not continue.
   bool failed() const { return summary && summary->text("status") == "failed"; }
-  /// Whether a program scored the candidates; reading a record does not start that program.
+  /// Returns whether an external program scored the candidates. Reading a record does not start this program.
   bool scored_by_program() const { return config.notes.plugins.count({"acquisition", "program"}) != 0; }
 };
 

@@ -28,18 +28,19 @@ HeightMapOptions height_map_options(const ExperimentOptions& options, const Plug
 /// that affects the results, sorted by bytes.
 std::string identity_text(const ResolveNotes& notes);
 
-/// Checks a composed tree and opens the plugins that it names. Ignores the block `sweep:`. Throws Error.
+/// Checks a composed config, loads the plugins that it uses, and returns the resolved config. Ignores the block
+/// `sweep:`. Throws Error.
 ResolvedConfig resolve_experiment(const Tree& composed, const PluginSource& plugins);
 
 /// Number of hex digits of an id.
 inline constexpr std::size_t kIdLength = 12;
 
-/// Whether the name of a folder begins with an id, as in 910071e8f4bb.old-1.
+/// Returns whether the name of a folder begins with an id, as in 910071e8f4bb.old-1.
 bool begins_with_id(const std::string& folder);
 
-/// Returns the name of the folder for all runs called `name`: the name, cut to 64 characters and never empty or hidden.
-/// It contains only letters, digits, '.', '_' and '-'; a '-' replaces other characters. If it differs from `name`, '~'
-/// and six hex digits of a hash are appended, so that different names have different folders.
+/// Returns the name of the folder for all runs called `name`: `name`, cut to 64 characters, with '-' in place of all
+/// characters except letters, digits, '.', '_' and '-'. The result is never empty and never hidden. If the result
+/// differs from `name`, '~' and six hex digits of a hash are appended, so that different names have different folders.
 std::string slug(const std::string& name);
 
 }  // namespace palpate

@@ -17,7 +17,8 @@
 namespace palpate {
 namespace {
 
-/// Appends a scalar, or nothing for null and numbers that are not finite. `append_text` appends texts.
+/// Appends a scalar; appends nothing for null and for numbers that are not finite. `append_text` is called to append a
+/// text.
 template <class AppendText>
 void append_scalar(std::string& out, const Scalar& value, const AppendText& append_text) {
   if (const auto* truth = std::get_if<bool>(&value)) {
@@ -124,7 +125,7 @@ std::vector<std::string> names_of(const std::vector<Row>& rows) {
   std::list<std::string> names;  // a list keeps references valid when it grows
   std::unordered_map<std::string_view, std::list<std::string>::iterator> places;
   for (const Row& row : rows) {
-    auto at = names.begin();  // where the next field of this row is expected
+    auto at = names.begin();  // expected position of the next field of this row
     for (const auto& [name, value] : row.fields) {
       if (at == names.end() || *at != name) {
         const auto known = places.find(name);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // An ordered list of named scalars: one line of a table or one JSON object. Names are dotted ("height_gp.jitter"): JSON
-// files contain nested objects instead, and CSV files the dotted names.
+// files contain nested objects instead; CSV files contain the dotted names.
 #pragma once
 
 #include <palpate/record_fields.hpp>
@@ -41,11 +41,11 @@ struct Row {
   std::string cell(std::string_view name) const;
 };
 
-/// Appends the fewest digits that read back as the same bits, with an exponent if that is shorter.
+/// Appends the shortest decimal text that is parsed to the same bits; the text has an exponent if this is shorter.
 void append_number(std::string& out, double value);
 
-/// Returns a scalar as the text of a CSV cell. Numbers have the fewest digits that read back as the same bits; null and
-/// numbers that are not finite become empty. Texts are quoted as by csv_text().
+/// Returns a scalar as the text of a CSV cell. Numbers have the fewest digits from which the same bits are parsed. Null
+/// and numbers that are not finite become empty. Texts are quoted as by csv_text().
 std::string csv_cell(const Scalar& value);
 
 /// Returns the text, in quotes if it contains commas, quotes or line ends.

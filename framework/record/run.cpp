@@ -45,8 +45,8 @@ Tree manifest_of(const RunEnvironment& environment, const ResolvedConfig& config
   return out;
 }
 
-/// Records that the experiment is built, and its models with their readers. Taps that cannot be repeated are announced,
-/// so that the record has a trace of them even if the process ends during the tap.
+/// Records that the experiment is built, and which parts of the run read each model. If taps cannot be repeated, they
+/// are announced, so that the record contains each tap even if the process ends during the tap.
 void set_up(const Experiment& experiment, RunDirectory& directory) {
   Tree models = Tree::map();
   for (const PlannedModel& one : experiment.plan().models) {
@@ -84,8 +84,8 @@ std::unique_ptr<Experiment> build_experiment(const ResolvedConfig& config, const
   }
 }
 
-/// Records the end of a run that could not be resumed. A run that had failed gets its former ending again. If another
-/// process uses the arm, the attempt ends as interrupted.
+/// Records the end of a run that could not be resumed. If the run had failed before, its former end is recorded again.
+/// If another process uses the arm, the attempt ends as interrupted.
 void take_back(RunDirectory& held, const std::optional<Ending>& before, const Error& trouble) {
   if (before && before->how == Ending::EndKind::failed) {
     held.end(*before);
@@ -94,7 +94,7 @@ void take_back(RunDirectory& held, const std::optional<Ending>& before, const Er
   }
 }
 
-/// Throws Error if the taps can be repeated, so that asking a person before each of them is pointless.
+/// Throws Error if the taps can be repeated, because asking a person before each tap is then pointless.
 void check_worth_asking(const ResolvedConfig& config, const Experiment& experiment) {
   if (!experiment.backend().repeatable()) return;
   throw Error("command line",
@@ -173,7 +173,7 @@ RunConclusion report_done(const RunEnvironment& environment, RunDirectory& held)
 }  // namespace
 
 /// Observes the experiment of a run. Records each tap before it calls the run's observers, and writes maps if the
-/// config requires them. A tap needs the permission of all observers.
+/// config requires them. A tap is made only if all observers permit it.
 class Run::Recorder final : public Observer {
  public:
   Recorder(Run& run, std::vector<Observer*> observers)
@@ -268,7 +268,7 @@ std::unique_ptr<Run> Run::start(const RunEnvironment& environment, const Resolve
   if (is_running(directory)) FileLock{directory / kRecordFile};  // throws Error of kind `busy`
   RunStatus status;
   if (const auto trouble = catch_error([&] { status = read_record(directory); })) {
-    // With `force`, a record that cannot be read can still be moved aside.
+    // With `force`, a record that cannot be read is moved aside instead.
     if (!options.force || trouble->kind() != Error::Kind::usage) throw Error(*trouble);
     status.state = RunStatus::State::unfinished;
   }
@@ -280,7 +280,8 @@ std::unique_ptr<Run> Run::start(const RunEnvironment& environment, const Resolve
     RunDirectory held(directory);
     return std::unique_ptr<Run>(new Run(config, report_done(environment, held)));
   }
-  // Build the experiment before the directory is changed, so that an error in building leaves no trace.
+  // The experiment is built before the directory is changed, so that an error in building leaves the directory
+  // unchanged.
   std::unique_ptr<Experiment> experiment =
       build_experiment(config, {environment.host, environment.interrupted, nullptr, directory.string()});
   if (options.asks_before_taps) check_worth_asking(config, *experiment);
@@ -305,7 +306,7 @@ std::unique_ptr<Run> Run::start(const RunEnvironment& environment, const Resolve
 
 std::unique_ptr<Run> Run::resume(const RunEnvironment& environment, const fs::path& directory,
                                  const ResumeOptions& options, std::vector<Observer*> observers) {
-  // Read the config first, so that a directory without a run does not become a run directory.
+  // The config is read first, so that a directory without a run does not become a run directory.
   const ResolvedConfig config = load_run(environment.host, directory);
   return resume(environment, config, std::make_shared<RunDirectory>(directory), options, std::move(observers));
 }
@@ -343,7 +344,7 @@ std::unique_ptr<Run> Run::resume(const RunEnvironment& environment, const Resolv
   if (!trouble)
     return std::unique_ptr<Run>(
         new Run(watch, environment, config, std::move(held), std::move(experiment), std::move(observers)));
-  catch_error([&] { take_back(*held, end, *trouble); });  // report the first error, not one of take_back()
+  catch_error([&] { take_back(*held, end, *trouble); });  // reports the first error, not an error of take_back()
   throw Error(*trouble);
 }
 
@@ -357,7 +358,7 @@ Belief& Run::look(const QuantitySet& quantities) {
     experiment_->look();
     return own;
   }
-  // Keep the copy only after success: an exception may leave it with a tap that is only partly processed.
+  // The copy is kept only after success, because an exception may leave a tap in the copy only partly processed.
   std::unique_ptr<Experiment> copy = std::move(copy_);
   if (!copy || !has_all(looked_at_)) {
     const QuantitySet wanted = looked_at_ | quantities;
@@ -418,7 +419,7 @@ const RunConclusion& Run::finish() {
   return *report_;
 }
 
-/// Writes the end of the run. `failure` is the reason why the run failed, or "". A failure is thrown as an Error after
+/// Writes the end of the run. `failure` is the reason why the run failed, or "". If the run failed, throws Error after
 /// everything is written.
 void Run::end(std::string failure) {
   tap_.reset();
@@ -427,7 +428,7 @@ void Run::end(std::string failure) {
   RunResult result;
   if (failure.empty()) failure = failure_in([&] { result = experiment_->result(); });
   directory_->check_in_place();
-  // After a failure, use only the counts: the models may fail again.
+  // After a failure, only the counts are used, because the models may fail again.
   if (!failure.empty()) result = experiment_->counts();
   for (const Backend::Learnt& one : experiment_->backend().learnt()) directory_->note_learnt(one.name, one.value);
   report.interrupted = result.interrupted;
@@ -501,7 +502,7 @@ RestoredFiles restore_files(const RunEnvironment& environment, RunDirectory& hel
     const RecordedRun run = read_recorded_run(environment.host, directory);
     RunReplay replay(environment, run);
     replay.advance_to(static_cast<int>(run.taps.size()));
-    replay.experiment().result();  // reads the same models as the run at its end
+    replay.experiment().result();  // reads the same models as the original run read at its end
     const auto [name, text] = surface_file(replay.experiment());
     restore(one, name == one.name ? text : "");
     const bool is_made = out.lost.empty() || out.lost.back() != one.name;

@@ -27,7 +27,7 @@ struct RunEnvironment {
   const PluginHost& host;
   const Installation& installation;
   std::vector<std::string> command_line;
-  const std::atomic<bool>* interrupted;  ///< true after the user asked to stop; may be null
+  const std::atomic<bool>* interrupted;  ///< becomes true when the user asks to stop; may be null
 };
 
 /// The name of the backend of runs whose taps are made by a calling program.
@@ -44,7 +44,7 @@ struct RestoredFiles {
 /// How a run ended.
 struct RunConclusion {
   std::filesystem::path directory;
-  bool already_done = false;  ///< nothing was run: the directory held the finished run
+  bool already_done = false;  ///< true if nothing was run, because the directory contained the finished run
   bool interrupted = false;   ///< the run can be resumed, and has no summary
   Row summary;                ///< the fields of summary.json
   RestoredFiles restored{};   ///< only if the run had already finished
@@ -64,7 +64,7 @@ struct ResumeOptions {
   bool asks_before_taps = false;
 };
 
-/// A run whose directory this process holds locked.
+/// A run whose directory this process has locked.
 class Run {
  public:
   /// Starts `config` in `directory`. `observers`, which must outlive the run, are called after each tap is recorded. If
@@ -75,8 +75,8 @@ class Run {
                                     const std::filesystem::path& directory, const StartOptions& options,
                                     std::vector<Observer*> observers = {});
 
-  /// Resumes the run in `directory` from its config and its recorded taps, and repeats no tap. A finished run stays as
-  /// it is.
+  /// Resumes the run in `directory` from its config and its recorded taps; no recorded tap is made again. A finished
+  /// run is not changed.
   static std::unique_ptr<Run> resume(const RunEnvironment& environment, const std::filesystem::path& directory,
                                      const ResumeOptions& options, std::vector<Observer*> observers = {});
   /// Resumes the run in a directory that this process has locked; `config` is the config of that run.
@@ -100,19 +100,20 @@ class Run {
   /// can have measured (see answers/tap_result_checks.hpp; `hover` and `overrun` of the backend bound the heights). If
   /// the run cannot continue, finishes it and throws Error of kind `run`.
   void tell(TapResult result);
-  /// Whether ask() has returned a tap for which tell() has not been called yet.
+  /// Returns whether ask() has returned a tap for which tell() has not been called yet.
   bool is_pending() const { return tap_.has_value(); }
 
   /// Ends the run, even before its budget is reached, and returns its report. Later calls return the same report.
   const RunConclusion& finish();
   bool is_finished() const { return report_.has_value(); }
 
-  /// Returns a belief with the current arrays of these quantities. This is the belief of the run if its readers already
-  /// use these quantities. Otherwise it is the belief of a copy with the same taps, so that the call does not change
-  /// the record.
+  /// Returns a belief with the current arrays of these quantities. If parts of the run already read these quantities,
+  /// this is the belief of the run itself. Otherwise, it is the belief of a copy of the run with the same taps, so that
+  /// the call does not change the record.
   Belief& look(const QuantitySet& quantities);
 
-  /// Do not call this for a run that had already finished when it was started or resumed: it has no experiment.
+  /// Do not call this for a run that had already finished when it was started or resumed, because such a run has no
+  /// experiment.
   Experiment& experiment() { return *experiment_; }
   const ResolvedConfig& config() const { return config_; }
   const std::filesystem::path& directory() const { return directory_ ? directory_->path() : report_->directory; }
@@ -148,23 +149,24 @@ RunConclusion start_run(const RunEnvironment& environment, const ResolvedConfig&
 RunConclusion resume_run(const RunEnvironment& environment, const std::filesystem::path& directory,
                          const ResumeOptions& options, const std::vector<Observer*>& observers = {});
 
-/// Returns the models of this config, each with its readers. Builds no backend except the simulator, because other
-/// backends may connect to a device. Models that only such a backend reads are left out. Throws Error if the experiment
-/// cannot be built.
+/// Returns the models of this config, each with the parts of the run that read it. Builds no backend except the
+/// simulator, because other backends may connect to a device. Models that only another backend would read are left out.
+/// Throws Error if the experiment cannot be built.
 std::vector<PlannedModel> models_of(const RunEnvironment& environment, const ResolvedConfig& config);
 
 /// Returns <runs>/<slug>/<id>.
 std::filesystem::path directory_of(const ResolvedConfig& config, const std::filesystem::path& runs);
 
-/// Returns a backend for experiments that make no taps: its tap() throws.
+/// Returns a backend for experiments that make no taps. Its function tap() throws.
 std::shared_ptr<Backend> no_backend(bool truth_known);
 
 /// Returns an Error if another build made taps of the run, so that this build must not resume it; else nullopt.
 std::optional<Error> objection_to_build(const RunEnvironment& environment, const ResolvedConfig& config,
                                         const RunRecord& record);
 
-/// Restores missing files of an ended run in a directory that this process has locked. A kill after the last line of
-/// the record but before summary.json leaves files missing, and so does a power failure before a sync. Throws Error.
+/// Restores missing files of an ended run in a directory that this process has locked. Files are missing if the process
+/// was killed after the last line of the record but before it wrote summary.json, or after a power failure before a
+/// sync. Throws Error.
 RestoredFiles restore_files(const RunEnvironment& environment, RunDirectory& held);
 
 }  // namespace palpate

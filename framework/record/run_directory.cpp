@@ -35,7 +35,7 @@ RunStatus status_of(std::optional<Ending> end, bool begun) {
 RecordEnd end_of(const fs::path& directory) {
   RecordEnd out;
   if (const auto trouble = catch_error([&] { out = read_record_end(directory); })) {
-    if (trouble->kind() == Error::Kind::run) throw *trouble;  // such an error does not show the state of the run
+    if (trouble->kind() == Error::Kind::run) throw *trouble;  // this error says nothing about the run
     out.begun = true;
     out.end.emplace();
     out.end->how = Ending::EndKind::failed;
@@ -73,7 +73,7 @@ RunStatus read_standing(const fs::path& directory) {
   RunStatus now = read_ending(directory);
   if (now.state == RunStatus::State::done) return now;
   if (is_running(directory)) return {RunStatus::State::running, 0, ""};
-  // A process that ended between the two checks has recorded its end after the first one, so read the record again.
+  // A process may end between the two checks and record its end after the first check, so the record is read again.
   return read_ending(directory);
 }
 
@@ -101,7 +101,8 @@ RunStatus read_record(const fs::path& directory) {
 }
 
 RunStatus read_status(const fs::path& directory) {
-  // Check the lock first: if a process ends between the two checks, the record then already contains its end.
+  // The lock is checked first. If a process ends between the two checks, the record then already contains the process's
+  // end.
   const bool held = is_running(directory);
   RunStatus out = read_record(directory);
   if (held && out.state != RunStatus::State::done) out.state = RunStatus::State::running;
@@ -136,7 +137,7 @@ void RunDirectory::begin_attempt(const std::string& build, bool forced) {
 void RunDirectory::set_up(bool announce, const Tree& models) {
   announce_ = announce;
   record_.add_setup(announce, models, sync_);
-  // Lines on the disk are lost if the directory entry of the record is not on the disk.
+  // If the directory entry of the record is not on the disk, the lines on the disk are lost.
   if (sync_) record_.sync_name();
 }
 
@@ -185,7 +186,7 @@ void RunDirectory::end(Ending ending) {
 
 void RunDirectory::fail(const std::string& reason) {
   const std::string id = fs::absolute(path_).lexically_normal().filename().string();
-  // A damaged record only gets the line `end`. This suffices, because readers take the end of a run from the last line.
+  // A damaged record gets only the line `end`. This suffices, because the state of a run is read from the last line.
   const bool damaged = catch_error([&] { before(); }).has_value();
   if (!damaged && !record_.begun()) {
     begin(Tree::map({{"id", Tree::quote(id)}, {"at", Tree::quote(now_text())}, {"version", Tree::quote(kVersion)}}));

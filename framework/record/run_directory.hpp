@@ -31,8 +31,9 @@ struct RunStatus {
   State state = State::absent;
   int taps = 0;             ///< number of recorded taps
   std::string stop_reason;  ///< reason why a finished run stopped or failed
-  /// Last recorded value of the expected RMSE, metres. For a finished run this is the value in its summary. For other
-  /// runs it is the value before the last tap, which is recorded only if `palpate run` or `resume` showed it.
+  /// Last recorded value of the expected RMSE, metres. For a finished run, this is the value in its summary. For other
+  /// runs, it is the value before the last tap; this value is recorded only if `palpate run` or `palpate resume`
+  /// displayed it.
   std::optional<double> expected_rmse = std::nullopt;
   bool cut = false;  ///< summary.json exists, but the record does not contain the end of a finished run
   std::optional<Ending> end = std::nullopt;  ///< end of a finished run
@@ -50,7 +51,8 @@ std::optional<Row> read_outcome(const std::filesystem::path& directory);
 /// lock. Treats a damaged last line as read_outcome() does.
 RunStatus read_ending(const std::filesystem::path& directory);
 
-/// Returns the same as read_ending(), but the state `running` if the run is not done and a process holds the lock.
+/// Returns the same as read_ending(), except that the state is `running` if the run is not done and a process holds the
+/// lock.
 RunStatus read_standing(const std::filesystem::path& directory);
 
 /// Returns whether a file that was made from the record of an ended run is missing or has another size than in `end`,
@@ -64,8 +66,8 @@ bool is_running(const std::filesystem::path& directory);
 /// that the process that holds the lock can call it. Throws Error for a damaged record.
 RunStatus read_record(const std::filesystem::path& directory);
 
-/// Returns the same as read_record(), but the state `running` if the run is not done and a process holds the lock.
-/// Throws Error for a damaged record.
+/// Returns the same as read_record(), except that the state is `running` if the run is not done and a process holds the
+/// lock. Throws Error for a damaged record.
 RunStatus read_status(const std::filesystem::path& directory);
 
 const char* state_name(RunStatus::State state);
@@ -86,22 +88,22 @@ class RunDirectory final {
   /// line.
   void sync() { sync_ = true; }
 
-  /// Removes all lines of the record. For a run that failed before it could begin.
+  /// Removes all lines of the record. Call this only for a run that failed before it could begin.
   void clear() { record_.clear(); }
 
-  /// Writes config.yaml. Call this before begin(). The file is on the disk on return, because a run without a config
+  /// Writes config.yaml. Call this before begin(). The file is synced to the disk, because a run without a config
   /// cannot be resumed.
   void write_config(const std::string& text) const;
 
   /// Writes the first line of the record: the version of the format and the entries of `manifest`.
   void begin(const Tree& manifest);
 
-  /// Records an attempt of this process, before it builds the experiment. `build` is the hash of this process's build;
-  /// `forced` is whether the user gave --force.
+  /// Records that this process begins an attempt. Call this before the experiment is built. `build` is the hash of this
+  /// process's build; `forced` is whether the user gave --force.
   void begin_attempt(const std::string& build, bool forced);
 
-  /// Records that the experiment of this attempt is built. `models` lists the readers of each model. With `announce`,
-  /// each tap is announced in the record before it is made.
+  /// Records that the experiment of this attempt is built. `models` lists, for each model, the parts of the run that
+  /// read it. With `announce`, each tap is announced in the record before it is made.
   void set_up(bool announce, const Tree& models);
 
   /// Returns the recorded taps. An announced tap without a result is recorded with the outcome `unknown` and returned,

@@ -14,7 +14,8 @@ namespace palpate {
 
 namespace fs = std::filesystem;
 
-/// Replaces the backend of a recorded run: it reads the same quantities, rejects the same lines, and makes no taps.
+/// Replaces the backend of a recorded run. This backend reads the same quantities and rejects the same lines as the
+/// original backend, and makes no taps.
 class RecordedBackend final : public Backend {
  public:
   /// `run` is null if there is no record.
@@ -47,7 +48,8 @@ class RecordedBackend final : public Backend {
     return out;
   }
 
-  /// Returns the quantities whose models appear in the first row. The run read them before its first tap.
+  /// Returns the quantities whose models appear in the first row. The original run read these quantities before its
+  /// first tap.
   QuantitySet reads() const override {
     QuantitySet out;
     if (has("height_gp.signal")) out.insert(quantity::kUncertainty);
@@ -125,7 +127,8 @@ ReadPlan readers_from_first_tap(const std::string& name, const QuantitySet& quan
 
 RunReplay::RunReplay(const RunEnvironment& environment, const RecordedRun& run, const ReadPlan& readers) : run_(run) {
   ExperimentOptions options = run.config.options;
-  // This stop rule ends runs whose arm failed; the replay must process all their taps.
+  // This stop rule ends a run after several failed taps in a row. It is removed, because the replay must process all
+  // taps.
   options.stop.failed_in_a_row.reset();
   const auto make = [&](bool truth_known) {
     return catch_error([&] {
@@ -137,7 +140,7 @@ RunReplay::RunReplay(const RunEnvironment& environment, const RecordedRun& run, 
   const std::optional<Error> trouble = make(run.truth_known());
   if (!trouble) return;
   options.scene.objects.clear();
-  if (make(false)) throw Error(*trouble);  // the objects are not the cause
+  if (make(false)) throw Error(*trouble);  // the error occurs without the objects, too
   if (run.truth_known()) truth_lost_ = trouble;
 }
 
@@ -210,7 +213,8 @@ ReplayReport replay_run(const RunEnvironment& environment, const fs::path& direc
   if (!run.summary) return report;
   const Row& summary = *run.summary;
   const std::string reason = summary.text("stop_reason");
-  // A run that did not fail updated its models once more, for its stop rules or to look for a candidate.
+  // A run that did not fail updated its models once more after the last tap, for its stop rules or to search for a
+  // candidate.
   if (!run.failed()) experiment.reason_to_stop();
   // A failed run does not read its models again: see Run::end().
   RunResult result = run.failed() ? experiment.counts() : experiment.result();
@@ -222,7 +226,7 @@ ReplayReport replay_run(const RunEnvironment& environment, const fs::path& direc
 
 std::vector<Row> earlier_summaries(const RunEnvironment& environment, const RecordedRun& run) {
   const std::vector<Seconds> seconds = seconds_until(run);
-  // A kill may have lost lines `timing`; runs do not depend on them.
+  // Lines `timing` may be missing after a kill. The results of runs do not depend on them.
   const bool timed = seconds.size() == run.taps.size() + 1;
   const double all = total(seconds.back());
   RunReplay replay(environment, run);

@@ -19,12 +19,12 @@ std::string grid_csv(const Candidates& candidates, const std::vector<Column>& co
   std::string out = "x,y";
   for (const Column& column : columns) out.append(",").append(column.first);
   out += '\n';
-  // Formatting every number would take half of the time of a short run, so texts are reused: for the axes, for columns
-  // with the same map, and for cells with the same value as the previous cell.
+  // Formatting every number would take half of the time of a short run, so texts are reused for the axes, for columns
+  // with the same map, and for cells with the value of the previous cell.
   std::vector<std::string> xs(static_cast<std::size_t>(candidates.columns));
   for (int column = 0; column < candidates.columns; ++column)
     append_number(xs[static_cast<std::size_t>(column)], candidates.starts(column, 0));
-  std::vector<std::size_t> first;  // first column with the same map
+  std::vector<std::size_t> first;  // for each column, the index of the first column with the same map
   for (const Column& column : columns) {
     const auto same = [&](const Column& other) { return other.second == column.second; };
     first.push_back(static_cast<std::size_t>(std::find_if(columns.begin(), columns.end(), same) - columns.begin()));
@@ -98,7 +98,7 @@ std::string maps_csv(Belief& belief, const BeliefState& state) {
         std::pair{"u", quantity::kUncertainty}, std::pair{"w", quantity::kLabelMean},
         std::pair{"p", quantity::kObjectProbability}}) {
     const bool is_of_label_gp = quantity == quantity::kObjectProbability && state.find("p") == nullptr;
-    if (is_of_label_gp) continue;  // the probability of the label GP follows from w
+    if (is_of_label_gp) continue;  // this probability can be computed from column w
     if (const Eigen::VectorXd* const map = array_of(belief, quantity)) columns.emplace_back(column, map);
   }
   return columns.empty() ? "" : grid_csv(belief.candidates(), columns);

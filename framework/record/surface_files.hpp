@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The files of a run that hold its surface and its maps.
+// The files with the surface and the maps of a run.
 #pragma once
 
 #include "experiment/experiment.hpp"
@@ -9,9 +9,9 @@
 
 namespace palpate {
 
-/// Returns name and content of the file of the reconstructed surface; call this in the stage `summary`. A height map
-/// gives surface.csv, with one row per candidate: position, mean and standard deviation of the height, object
-/// probability, reconstruction, truth. A mesh gives surface.ply.
+/// Returns name and content of the file of the reconstructed surface. Call this in Stage::summary. For a height map,
+/// the file is surface.csv with one row per candidate: position, mean and standard deviation of the height, object
+/// probability, reconstructed height, true height. For a mesh, the file is surface.ply.
 std::pair<std::string, std::string> surface_file(Experiment& experiment);
 
 /// Returns the true heights at fixed candidates, in metres.

@@ -16,8 +16,8 @@ const std::vector<std::string>& palette_stops(Palette palette) {
 
 ColourScale deviation_colours(double least, double most) {
   constexpr double kFloor = 1e-6;  // metres; a micrometre is below the resolution of any measurement
-  // smallest ratio of `most` to `least` for a logarithmic scale; with a larger ratio, a linear scale would hide
-  // differences between low values
+  // The scale is logarithmic if `most` / `least` exceeds this ratio. A linear scale would then hide differences between
+  // low values.
   constexpr double kWorthRatios = 5.0;
   least = std::max(least, kFloor);
   most = std::max(most, kFloor);

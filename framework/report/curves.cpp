@@ -25,7 +25,7 @@ Curve curve_of(const History& history, const std::string& name, const Get& get) 
   return curve;
 }
 
-/// Returns one curve per number that `numbers` returns for the state at the last moment.
+/// Returns one curve per number in the row that `numbers` returns for the state at the last moment.
 template <class Numbers>
 std::vector<Curve> named_curves(const History& history, const Numbers& numbers) {
   const auto row_at = [&](const RunAtTap& moment) { return numbers(Row{moment.result.state.fields}); };

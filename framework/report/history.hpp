@@ -21,7 +21,7 @@ namespace palpate {
 struct TapMark {
   enum class Kind { on, off, failed };
   int tap = 1;
-  Kind kind = Kind::failed;  ///< determined by the label of the contact at the moment shown
+  Kind kind = Kind::failed;  ///< depends on the label that the contact has at the shown moment
   double x = 0.0;            ///< position of the tap (x, y), metres
   double y = 0.0;
   double height = 0.0;  ///< metres; the height of the desk for a tap without a contact
@@ -34,11 +34,11 @@ struct RunAtTap {
   std::optional<TapRecord> next;  ///< the next tap; nullopt if no candidate is left, or if its choice is unknown
   /// false if an external program scores the candidates, because reports do not start programs
   bool is_next_known = true;
-  /// from any side: path length of the next tap, predicted by the most probable particle, metres
+  /// only for a run from any side: path length of the next tap, predicted by the most probable particle, metres
   std::optional<double> next_along;
   std::vector<TapReading> suspected_outliers;  ///< contacts that may be outliers
-  /// Greatest standard deviation, metres: of the heights at the candidates given all taps, or from any side of the
-  /// surface.
+  /// Greatest standard deviation given all taps so far, metres: of the heights at the candidates, or of the surface for
+  /// a run from any side.
   double largest_deviation = 0.0;
   /// Range of the label GP's mean w over the candidates; nullopt if the footprint is not the label GP.
   std::optional<double> least_weight, most_weight;
@@ -82,8 +82,8 @@ struct History {
   std::vector<int> shown;         ///< indices of the moments with maps, ascending
   /// Maps with one frame per shown moment, in this order. "height" is the reconstruction, metres. "deviation" is the
   /// standard deviation of the height, metres. It is limited to the largest standard deviation of the height GP at any
-  /// moment, because the standard deviation of the surface GP is meaningless before the first contact with an object.
-  /// Then follow "u", and "w" if the footprint is the label GP, else "p". "score" follows if the scores equal neither
+  /// moment. Before the first contact with an object, the standard deviation of the surface GP is meaningless. The next
+  /// maps are "u", and "w" if the footprint is the label GP, else "p". "score" follows if the scores equal neither
   /// these maps nor e = u w. The last map is "truth" in metres, with a single frame, if the truth is known.
   std::vector<MapSeries> maps;
   Eigen::VectorXd x, y;  ///< coordinates of the maps' columns and rows, metres; maps are stored row by row

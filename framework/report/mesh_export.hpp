@@ -14,9 +14,9 @@
 namespace palpate {
 
 /// Returns a mesh over a grid of candidates, with one vertex per candidate in their order. Each square of four
-/// neighbours has two triangles; a grid that is one candidate wide has none. `heights` and their standard deviations
-/// `deviations` are in metres, one per candidate. Normals are computed from central differences of the heights, and
-/// from one-sided differences at the edges. Along an axis with a single candidate, the slope counts as 0.
+/// neighbours has two triangles; a grid with only one row or column has no triangles. `heights` and their standard
+/// deviations `deviations` are in metres, one per candidate. Normals are computed from central differences of the
+/// heights, and from one-sided differences at the edges. Along an axis with a single candidate, the slope counts as 0.
 Surface surface_mesh(const CandidateGrid& candidates, const Eigen::VectorXd& heights,
                      const Eigen::VectorXd& deviations);
 
@@ -32,8 +32,8 @@ ReconstructedSurface reconstruct(Experiment& experiment);
 
 /// Returns the surface as a PLY 1.0 file in ASCII. x, y, z, nx, ny and nz have double precision. `quality` (the
 /// standard deviation), `object_probability` and, if known, `true_height` have single precision, because MeshLab
-/// requires it. In ASCII, positions are exact to the bit on every machine, and people can read the file. `run` names
-/// the run and becomes a comment of the file, after conversion by header_text().
+/// requires it. The format ASCII keeps positions exact to the bit on every machine, and people can read the file. `run`
+/// names the run and becomes a comment of the file, after conversion by header_text().
 std::string surface_ply(const ReconstructedSurface& surface, const std::string& run);
 
 /// Returns `mesh`, the closed surface of a run from any side, in the format of mesh_ply().

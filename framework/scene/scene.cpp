@@ -22,7 +22,7 @@ class DeskScene final : public Scene {
         margin_(options.min_object_height),
         effects_(options.effects.values),
         context_{factory, *this, seed, nullptr} {
-    // While the shapes are created, the scene in their context has no bodies yet.
+    // While the shapes are created, the scene to which their context refers has no bodies yet.
     std::vector<Body> bodies;
     for (const ObjectOptions& object : options.objects) {
       bodies.emplace_back(context_.create<const Shape>(object.shape), object.tilt);

@@ -18,8 +18,8 @@ namespace {
 
 constexpr std::size_t kMaxCombinations = 1'000'000;
 constexpr std::size_t kMaxSettings = 20'000'000;  ///< limit on the number of combinations times keys
-/// Layer of a swept group or type. It is above the layer of swept options, because an option may not exist for every
-/// type.
+/// Layer of a swept group or type. This layer is above the layer of swept options, because a type may lack some of the
+/// options.
 constexpr Layer kChoiceLayer = kSweepLayer + 1;
 
 /// Returns whether `key` is the group or lies within it.
@@ -252,7 +252,7 @@ bool SweepDescription::wanted(const Combination& combination, const WhereConditi
     for (const std::string& choice : keys_) {
       if (!depends(name, choice)) continue;
       if (swept) return WhereCondition::Value{};  // another item of the list sets this name
-      // Nearly any word could be an option of a strategy, so an unknown word is a value.
+      // Nearly any word could be the name of a strategy's option, so an unknown word counts as a value.
       if (choice == kStrategy && !base(name)) continue;
       throw Error(*place, fmt::format("'{}' depends on '{}', which is swept", name, choice),
                   fmt::format("sweep it too, or compare '{}'", choice));

@@ -35,13 +35,14 @@ struct SweptValue {
 /// The values of a combination, in the order in which they are merged into the config. Each key occurs once.
 using Combination = std::vector<SweptValue>;
 
-/// The blocks of a sweep. Blocks are multiplied in their order; the last one varies fastest:
+/// The blocks of a sweep. The combinations of the sweep are the Cartesian product of its blocks, in their order; the
+/// last block varies fastest:
 ///
 ///     grid:  {a: [1, 2], b: [x, y]}               all pairs, the last key varies fastest: 4 combinations
 ///     zip:   {a: [1, 2], b: [x, y]}               values with the same index: 2 combinations
 ///     list:  [{a: 1}, {a: 2, b: [x, y]}]          one item after the other, each a small grid: 3 combinations
 ///     sobol: {samples: 64, keys: {a: "uniform(1 cm, 2 cm)"}}    points in continuous ranges: see sobol_axes()
-///     where: a > 1 and not b == x                 keeps combinations that satisfy this condition, or all of a list
+///     where: a > 1 and not b == x                 drops combinations that violate the condition, or one of a list
 ///
 /// Values are lists, `range` and `logspace`: see expand_values(). A key may occur in one block only.
 class SweepDescription {
@@ -55,21 +56,22 @@ class SweepDescription {
 
   /// Returns the swept keys, in the order in which they are merged into a config.
   const std::vector<std::string>& keys() const { return keys_; }
-  /// Returns all combinations, also those that `where` excludes. They live as long as this object.
+  /// Returns all combinations, including those that `where` excludes. The combinations exist as long as this object.
   const std::vector<Combination>& combinations() const { return combinations_; }
 
   /// Returns whether `where` keeps a combination. `base` returns the values that the config has for names without a
   /// value in the combination. Throws Error for an unknown name, and for a name that depends on a swept choice
   /// (kernel.alpha if kernel is swept).
   bool wanted(const Combination& combination, const WhereCondition::Values& base) const;
-  /// Returns the place of the first condition; "" if there is none.
+  /// Returns the source location of the first condition; "" if there is none.
   std::string where_place() const;
 
   /// Returns the description as a `sweep:` block that gives the same combinations.
   const Tree& written() const { return written_; }
 
  private:
-  /// Axes whose values are combined: values with the same index (`together`), or every value with every other.
+  /// Axes whose values are combined: values with the same index (`together`), or each value of an axis with each value
+  /// of the others.
   struct Part {
     std::vector<SweepAxis> axes;
     bool together = false;
@@ -99,7 +101,7 @@ std::vector<Override> overrides_of(const Combination& combination);
 /// Returns a value as text for conditions. The text of a group is its type.
 std::string condition_text(const Tree& value);
 
-/// Returns whether `key` chooses a plugin or a type, and so the available options.
+/// Returns whether `key` chooses a plugin or a type, and therefore decides which options exist.
 bool is_choice(const std::string& key);
 
 }  // namespace palpate

@@ -62,7 +62,7 @@ SweepDraft::~SweepDraft() {
 void SweepDraft::add(const Job& job, const ResolvedConfig& config) {
   const fs::path directory = folder_ / "jobs" / job.id;
   make_folder(directory);
-  // No temporary file is needed, because no other process reads the folder before it gets its final name.
+  // No temporary file is needed, because no other process reads the folder before the folder gets its final name.
   AppendFile file(directory / "config.yaml");
   file.append(to_yaml_with_places(config.tree), false);
   file.flush();

@@ -23,12 +23,12 @@ class SweepDraft {
   void add(const Job& job, const ResolvedConfig& config);
 
   /// Writes config.yaml and manifest.jsonl, and renames the folder to the directory of the sweep. Returns false if the
-  /// sweep exists already. The existing sweep is not changed, except that deleted configs of its jobs are written
-  /// again. Throws Error.
+  /// sweep exists already. The existing sweep is not changed, except that job configs are written again if they were
+  /// deleted. Throws Error.
   bool publish(const SweepPlan& plan);
 
  private:
-  /// Writes the configs of jobs that were deleted. A job without its config cannot be resumed or replayed.
+  /// Writes job configs again if they were deleted, because a job without its config cannot be resumed or replayed.
   void replace_lost(const Sweep& sweep) const;
 
   std::filesystem::path runs_;

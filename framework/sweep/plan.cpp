@@ -32,7 +32,7 @@ struct KeyUse {
 /// Makes the jobs of a sweep one by one.
 class SweepPlanner {
  public:
-  /// `shared`: overrides of all jobs, applied before those of their combination.
+  /// `shared`: overrides of all jobs, applied before the overrides of a job's combination.
   SweepPlanner(Composer& composer, const PluginHost& host, const fs::path& file, const std::vector<std::string>& keys,
                const std::vector<Override>& shared)
       : composer_(composer), host_(host), file_(file), shared_(shared), keys_(keys), uses_(keys.size()) {
@@ -93,7 +93,7 @@ class SweepPlanner {
       uses_[key].takes_part = true;
       values[key] = value_text(setting.value());
     }
-    // A key that only other combinations set has the value of the config.
+    // A key that only other combinations set keeps the value from the config in this job.
     for (std::size_t key = 0; key < keys_.size(); ++key) {
       if (!said[key]) values[key] = unswept_text(keys_[key], composed, resolved.tree);
     }
@@ -128,7 +128,7 @@ class SweepPlanner {
     return condition_text(said != nullptr ? *said : *has);
   }
 
-  /// Returns whether two equal jobs differ only in options that their plugins lack.
+  /// Returns whether the settings of two equal jobs differ only in options that the plugins of the jobs lack.
   bool differs_by_what_is_left_out(std::size_t twin, const Job& job, const Combination& combination) const {
     if (jobs_[twin].values != job.values) return false;
     bool any = false;
@@ -237,7 +237,8 @@ Tree written_config(const std::filesystem::path& file, const Tree& base, const s
   return out;
 }
 
-/// Returns the overrides of all jobs: the expectations, and no recorded surfaces unless `base` sets the key.
+/// Returns the overrides for all jobs: the expectations, and an override that turns off the recording of surfaces
+/// unless `base` sets `log.surface`.
 std::vector<Override> shared_overrides(const SweepOverrides& words, const Tree& base) {
   std::vector<Override> out = words.expectations;
   if (base.find_path("log.surface") == nullptr) {
@@ -259,8 +260,8 @@ SweepPlan plan_sweep(Composer& composer, const PluginHost& host, const fs::path&
     throw Error(file.string(), "nothing to sweep", "give KEY=V1,V2 or a 'sweep:' in the config");
   }
   const std::vector<Override> shared = shared_overrides(read, base);
-  // The config without a combination; nullopt if it is incomplete, because the sweep sets the missing keys. Other
-  // errors in the config are found when the jobs are resolved.
+  // The config without a combination. It is nullopt if the config is incomplete because only the sweep sets the missing
+  // keys. Other errors in the config are found when the jobs are resolved.
   std::optional<ResolvedConfig> alone;
   catch_error([&] { alone = resolve_experiment(base, host); });
   const WhereCondition::Values base_value = [&](const std::string& name) -> std::optional<WhereCondition::Value> {

@@ -24,8 +24,9 @@ struct SweepPlan {
 using JobSink = std::function<void(const Job& job, const ResolvedConfig& config)>;
 
 /// Composes, resolves and checks all jobs of `file` and `words`, the words after `palpate sweep CONFIG`: see
-/// SweepDescription. Options that the plugin of a job lacks are dropped, and jobs that become equal by this are merged.
-/// Throws Error for other equal jobs and for a swept option that no job has. Writes nothing.
+/// SweepDescription. Options that the plugin of a job lacks are dropped, and jobs that become equal in this way are
+/// merged. Throws Error for jobs that are equal for another reason, and for a swept option that no job has. Writes
+/// nothing.
 SweepPlan plan_sweep(Composer& composer, const PluginHost& host, const std::filesystem::path& file,
                      const std::vector<std::string>& words, const std::filesystem::path& runs,
                      const JobSink& sink = nullptr);

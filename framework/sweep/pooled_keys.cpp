@@ -31,8 +31,8 @@ bool is_decided(const std::string& path, const PoolTexts& keys, const std::vecto
   });
 }
 
-/// Returns the topmost group above `path` whose type is one of the `differing` options, or the group around the list
-/// that contains `path`, or else `path`.
+/// Returns the topmost group above `path` whose type is one of the `differing` options. Without such a group, returns
+/// the group around the list that contains `path`, or `path` itself if it is not in a list.
 std::string enclosing_choice(const std::string& path, const PoolTexts& differing) {
   std::string group;
   for (auto dot = path.find('.'); dot != std::string::npos; dot = path.find('.', dot + 1)) {

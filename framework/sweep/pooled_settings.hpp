@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The settings of pooled records (pooled_sweep.hpp): the keys in which they differ, and their values at these keys.
+// The settings of pooled records (pooled_sweep.hpp): the keys in which the records differ, and the values at these
+// keys.
 #pragma once
 
 #include "config/tree.hpp"
@@ -24,8 +25,8 @@ struct PooledSetting {
 /// for example.
 bool decides_run(const std::string& path);
 
-/// Returns the options in which the configs differ although none of `keys` decides them. The options of plugins with
-/// different types count as one option, the plugin's block.
+/// Returns the options in which the configs differ although no key in `keys` decides these options. The options of
+/// plugins with different types count as one option, the plugin's block.
 std::vector<std::string> further_differences(const std::vector<PooledSetting>& settings,
                                              const std::vector<std::string>& keys);
 

@@ -14,7 +14,8 @@
 namespace palpate {
 namespace {
 
-/// Classes of equal values (union-find). A mark is a text that identifies a value in a config or a text in a sweep.
+/// Classes of equal values (union-find). A mark is a string that identifies a value: its content in a config, or its
+/// text in a sweep.
 class ValueClasses {
  public:
   /// Puts two marks of the same value into one class.

@@ -18,8 +18,8 @@ inline constexpr const char* kReached = "reached";
 /// directory. A job that has failed or has not reached a checkpoint has its final row. For a checkpoint with a goal,
 /// the column `reached` shows which jobs reached the goal.
 ///
-/// `complete` must compute the missing summaries; if it returns false, the result is nullopt. Throws Error for a number
-/// of taps that no job made, and for a damaged sweep.
+/// `complete` must compute the missing summaries. If `complete` returns false, the result is nullopt. Throws Error for
+/// a number of taps that no job made, and for a damaged sweep.
 std::optional<std::vector<std::vector<Row>>> results_at(const Sweep& sweep, const std::vector<Checkpoint>& occasions,
                                                         const std::function<bool(const TapSummaries&)>& complete);
 

@@ -66,7 +66,7 @@ std::vector<SweepAxis> sobol_axes(const Tree& described, ValueCount& count) {
   std::vector<SweepAxis> axes;
   std::vector<ContinuousRange> ranges;
   // A digital shift combines all points with one random bit pattern per axis by XOR, as for the initial taps. The
-  // points stay evenly spread, and the first point no longer has the lower end of every range.
+  // shifted points are still evenly spread, and the first point is no longer at the lower end of every range.
   std::vector<std::uint64_t> shift;
   Random random(0, "sweep.sobol");
   for (const Tree::Entry& entry : keys->entries) {

@@ -10,8 +10,8 @@ namespace palpate {
 
 /// Reads `{samples: 64, keys: {kernel.length_scale: "log_uniform(1 cm, 10 cm)", belief.height.noise: "uniform(0.1 mm, 1
 /// mm)"}}`. Returns one axis per key with `samples` values (1 to 100000). The i-th values of all axes are the i-th
-/// point of a Sobol sequence. Its digital shift is fixed, so that the points are the same every time, and a smaller
-/// sample is the beginning of a larger one. Throws Error.
+/// point of a Sobol sequence. The digital shift of the sequence is fixed, so that all calls return the same points. A
+/// smaller sample is the beginning of a larger sample. Throws Error.
 std::vector<SweepAxis> sobol_axes(const Tree& described, ValueCount& count);
 
 }  // namespace palpate

@@ -41,15 +41,16 @@ struct Sweep {
 /// Returns the name of a sweep's directory: a hash of its resolved config, its keys and its jobs.
 std::string sweep_id(const Tree& config, const Sweep& sweep);
 
-/// Returns the text of manifest.jsonl: one line per job, each with the id of the sweep, which reveals changed files.
+/// Returns the text of manifest.jsonl: one line per job. Each line contains the id of the sweep, by which read_sweep()
+/// detects changed files.
 std::string manifest_text(const Sweep& sweep, const std::string& id);
 
 /// Reads the manifest of a sweep. Throws Error if it is missing or damaged, or if config or manifest have changed since
 /// the start of the sweep.
 Sweep read_sweep(const std::filesystem::path& directory);
 
-/// Returns the value of the swept key `name` if all jobs have the same one, as after `name=X` on the command line.
-/// Otherwise returns the name in the sweep's config.
+/// Returns the name of the sweep. If `name` is a swept key with the same value in all jobs, as after `name=X` on the
+/// command line, returns this value. Otherwise returns `name` of the sweep's config.
 std::string sweep_name(const Sweep& sweep);
 
 /// Returns all indices into Sweep::jobs.
@@ -61,9 +62,9 @@ std::filesystem::path job_directory(const Sweep& sweep, const Job& job);
 /// Returns the summary of each job; nullopt for a job that has not ended. See read_outcome().
 std::vector<std::optional<Row>> sweep_summaries(const Sweep& sweep);
 
-/// Prefix of a summary field in results.csv whose name is also a swept key.
+/// Prefix in results.csv for a summary field whose name is also a swept key.
 inline constexpr const char* kOfRun = "summary.";
-/// The number of threads, an option that does not change results.
+/// The option with the number of threads, which does not affect results.
 inline constexpr const char* kThreads = "belief.engine.threads";
 
 /// Returns a row of results.csv: job, id, swept keys, and summary fields. A summary field with the name of a swept key,

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Summaries of a sweep's jobs after each of their taps, as if the budget had ended at that tap. They are computed from
 // the recorded taps on demand, and stored in the job's directory as summaries.jsonl. The file has one line per tap
-// except the last, each with the hash of the final summary. If the hash differs, the job ran again, and its rows are
-// computed again.
+// except the last, each with the hash of the final summary. If this hash differs from the hash of the job's summary,
+// the job was run again, and its rows are computed again.
 #pragma once
 
 #include "record/run.hpp"
@@ -40,8 +40,8 @@ class TapSummaries {
   /// Computes and stores the rows of `job`, one of the jobs in missing(). Throws Error.
   void compute(const RunEnvironment& environment, std::size_t job) const;
 
-  /// Calls `use` for the jobs in missing(). Their rows must have been stored since, by this process or others. Throws
-  /// Error if rows are still missing.
+  /// Calls `use` for the jobs in missing(). This process or others must have stored their rows after the construction
+  /// of this object. Throws Error if rows are still missing.
   void read_missing() const;
 
  private:

@@ -29,7 +29,7 @@ bool is_space(char c) { return std::string_view(" \t\n\r").find(c) != std::strin
 bool is_quote(char c) { return c == '\'' || c == '"'; }
 bool ends_word(char c) { return is_sign(c) || is_space(c) || is_quote(c) || c == '(' || c == ')'; }
 
-/// Returns the hint for an operator of another language.
+/// Returns the hint for an operator that other languages use, such as === or &&.
 std::string meant_by(const std::string& sign) {
   constexpr std::array<std::array<const char*, 2>, 8> kMeant{{{"=", "=="},
                                                               {"===", "=="},
@@ -106,8 +106,8 @@ class ConditionParser {
   /// Returns the next token without its opening quote.
   std::string shown() const { return tokens_[next_].substr(at_quoted() ? 1 : 0); }
 
-  /// Reads parts that are joined by `word`. A part with the value `decides` decides the result, and the rest is only
-  /// parsed. Otherwise an undecided part makes the result undecided.
+  /// Reads parts that are joined by `word`. If a part has the value `decides`, this is the result, and the remaining
+  /// parts are only parsed. Otherwise, the result is undecided if a part is undecided.
   Decision joined(bool decides, const char* word, Decision (ConditionParser::*part)(int, bool), int depth, bool asked) {
     Decision out = (this->*part)(depth, asked);
     while (take(word)) {
@@ -167,7 +167,7 @@ class ConditionParser {
   Decision decide(const Value& left, Relation relation, const std::string& value, bool quoted,
                   const std::string& written) const {
     const Value right = quoted ? Value{value} : value_of_(value).value_or(Value{value});
-    // An unquoted value is never empty, so an empty right side is a name without a value.
+    // An unquoted value is never empty. An empty right side without quotes is therefore a name without a value.
     const bool lacks_right = right.text.empty() && !quoted;
     if ((left.text.empty() && left.is_result) || (lacks_right && right.is_result)) return std::nullopt;
     if (left.text.empty() || lacks_right) return false;

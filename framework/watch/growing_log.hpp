@@ -12,8 +12,8 @@
 
 namespace palpate {
 
-/// The lines of a growing record. A line without a line end is ignored. A killed process leaves such a line behind, and
-/// `palpate resume` removes it.
+/// The lines of a growing record. A line without a line end is ignored. A killed process may leave an incomplete line
+/// behind; `palpate resume` removes this line.
 class GrowingLog {
  public:
   explicit GrowingLog(std::filesystem::path file) : reader_(std::move(file)) {}

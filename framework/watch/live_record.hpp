@@ -14,7 +14,7 @@ class LiveRecord {
  public:
   virtual ~LiveRecord() = default;
 
-  /// Reads and processes changes of the record for about this many seconds; a single tap may take longer. Returns
+  /// Reads and processes changes of the record for about `seconds` seconds; a single tap may take longer. Returns
   /// whether the record has more changes to read.
   virtual bool look(double seconds) = 0;
 

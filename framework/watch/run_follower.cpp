@@ -72,14 +72,15 @@ bool RunFollower::look(double seconds) {
 }
 
 void RunFollower::read_record() {
-  // Check the lock before reading the record. If the process ends in between, the record then already contains all its
-  // taps.
+  // The lock is checked before the record is read. If the process ends in between, the record then already contains all
+  // its taps.
   const bool held = is_running(directory_);
   const std::optional<Row> summary = read_outcome(directory_);
   const std::string standing = (held ? "held " : "") + (summary ? to_json(*summary) : "");
   bool anew = false;
   std::vector<RecordLine> lines = log_.read(anew);
-  // If the record could not be replayed, another record may have replaced it.
+  // If the known lines could not be replayed, another record may have replaced this one, so it is read from the
+  // beginning.
   if (!lines.empty() && !trouble_.empty()) {
     log_.restart();
     lines = log_.read(anew);
@@ -99,8 +100,8 @@ void RunFollower::read_record() {
   if (recording_ && pending_.empty()) recording_->summary = summary;
 }
 
-/// Adds the times read since the last call. They come separately, because the record contains the times of a tap after
-/// the tap.
+/// Adds the times read since the last call. The times are added separately, because the record contains the times of a
+/// tap after the tap itself.
 void RunFollower::add_times() {
   std::vector<TapTimes>& known = recording_->timings;
   if (known.size() == timings_.size()) return;

@@ -15,10 +15,10 @@
 namespace palpate {
 
 /// Follows the run in a directory, which may have no tap yet. Writes nothing. The page equals the report of the run,
-/// except that it lacks the maps after some taps of a long run.
+/// except that for a long run, the maps after some of its taps are missing.
 ///
-/// If the run is killed and resumed, the page continues. If another record replaces the record (--force), the pages
-/// start again.
+/// If the run is killed and resumed, the page continues. If a new run replaces the record (--force), the pages start
+/// again.
 class RunFollower final : public LiveRecord {
  public:
   /// `environment` must outlive the object.
@@ -47,7 +47,7 @@ class RunFollower final : public LiveRecord {
   std::unique_ptr<HistoryBuilder> builder_;  ///< has as many taps as recording_
   std::string trouble_;                      ///< error of the present record, "" for none
   std::string standing_;                     ///< state of lock and summary at the last reading
-  int generation_ = 1;  ///< number of replacements of the record; pages of another generation reload
+  int generation_ = 1;  ///< increases when open pages must reload, for example after a new run replaced the record
   int revision_ = 0;    ///< number of changes without a new tap
 };
 

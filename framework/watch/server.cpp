@@ -84,7 +84,7 @@ std::string host_of(std::string_view text) {
 }
 
 struct PageRequest {
-  std::string place;              ///< place as in Site::find()
+  std::string place;              ///< place of the record: see Site::find()
   std::optional<std::string> at;  ///< position of a page that asks for news
   bool now = false;
 };
@@ -226,8 +226,8 @@ class Server::Impl::Connection : public std::enable_shared_from_this<Connection>
     stream_.expires_after(kMostSilence);
     http::async_write(stream_, response_, [self = shared_from_this()](beast::error_code trouble, auto) {
       if (trouble || self->awaits_close_) return self->close();
-      // Without this, unread data such as the body of a POST would reset the connection before the client reads the
-      // response.
+      // Without this shutdown, unread data, such as the body of a POST, would reset the connection before the client
+      // reads the response.
       beast::error_code none;
       self->stream_.socket().shutdown(tcp::socket::shutdown_send, none);
       self->stream_.expires_after(kMostSilence);
@@ -280,7 +280,8 @@ void Server::Impl::accept() {
   });
 }
 
-/// Limits the connections without the token, so that they cannot exclude clients that have the token.
+/// Limits the number of connections that have not presented the token, so that they cannot block clients with the
+/// token.
 void Server::Impl::drop_oldest_unauthenticated() {
   std::shared_ptr<Connection> oldest;
   std::size_t unauthenticated = 0;

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: MIT
 // HTTP server for the pages of a Site. It cannot change a record.
 //
-// An address is http://HOST:PORT/TOKEN/PLACE, with a random token. At this address are the page and `news?at=POSITION`.
-// The server answers a request for news when there is an update for a page at this position, or with 204 after a while.
-// With `&now`, it answers at once. Each page has one request at a time (long polling). A stream of events would instead
-// occupy one of the six connections that a browser has per server, and would fill up while a page draws slowly.
+// An address is http://HOST:PORT/TOKEN/PLACE, with a random token. The page has this address, and its updates have the
+// address `news?at=POSITION` relative to the page. The server answers a request for news when there is an update for a
+// page at this position, or with 204 after a while. If the request contains `&now`, the server answers at once. Each
+// page has one request at a time (long polling). A stream of events would instead occupy one of the six connections
+// that a browser has per server, and would fill up while a page draws slowly.
 //
-// The server answers with an empty 403 to requests without the token. It does the same for requests that address it by
-// a foreign name, such as requests of a website whose name resolves to this machine. Unknown places get the status
+// The server answers with an empty 403 to requests without the token. It also answers with 403 if the host name in a
+// request is foreign, as in requests from a website whose name resolves to this machine. Unknown places get the status
 // 404, and methods other than GET the status 405. Headers forbid caching, frames and referrers.
 //
 // One thread suffices: replaying a tap takes milliseconds, and the other cores are for the run.
@@ -39,7 +40,7 @@ class Server {
   /// Returns whether the server accepts connections from other machines.
   bool is_open_to_others() const;
 
-  /// Serves until SIGINT, SIGTERM, SIGHUP (unless ignored), or the end of `patience`.
+  /// Serves until SIGINT, SIGTERM, SIGHUP (unless ignored), or until ServerOptions::patience has passed.
   void run();
 
  private:

@@ -37,7 +37,7 @@ std::string SweepFollower::page() {
 std::optional<std::string> SweepFollower::news(const std::string& at) {
   const std::string now = std::to_string(revision_);
   if (at == now) return std::nullopt;
-  // The text is concatenated, because a copy of the data of a sweep may need megabytes.
+  // The JSON text is concatenated, because copying the data of a sweep into a JSON object may need megabytes.
   return "{\"at\": \"" + now + "\", \"sweep\": " + line_of(data_) + "}";
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Standard deviation of the height relative to the prior, multiplied by the probability of an object. The paper uses
-// the variance instead, which decreases too fast compared with the entropy of an outline.
+// Standard deviation of the height relative to the prior, multiplied by the probability of an object. Sun and Min 2021
+// use the variance. In a sum with the entropy of the footprint, the variance would decrease too fast compared with this
+// entropy.
 #include <palpate/acquisition.hpp>
 #include <palpate/plugin.hpp>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Relative posterior variance u of the height (Yi et al., IROS 2016; compared in the paper). For taps from any side:
-// variance of the surface along its normal (after Caccamo et al., RIL 2016: GPAtlasRRT).
+// Relative posterior variance u of the height (Yi et al., IROS 2016; Sun and Min 2021 compare it with `weighted`). For
+// taps from any side: variance of the surface along its normal (after Caccamo et al., RIL 2016: GPAtlasRRT).
 #include <palpate/acquisition.hpp>
 #include <palpate/plugin.hpp>
 

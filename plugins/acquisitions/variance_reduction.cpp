@@ -68,10 +68,10 @@ std::vector<int> sample_of(const std::vector<int>& all, std::size_t most) {
 /// The sum over all positions is an area, like the expected area of new objects. The score is the sum of both, divided
 /// by the largest such sum, so that its maximum is 1.
 ///
-/// On larger desks more objects are possible, and the weight of new objects grows with the side length. Otherwise the
-/// last objects would be found late or never, while known outlines are refined to the millimetre. The largest score
-/// grows by the same factor, so that this acquisition keeps its weight in sums with other acquisitions. Benefits and
-/// costs: framework/docs/clutter.md.
+/// On desks larger than kUsualSide, more objects are possible, and the weight of new objects grows with the side
+/// length. Otherwise the last objects would be found late or never, while known outlines are refined to the millimetre.
+/// On such desks the largest score may exceed 1 by up to the same factor, so that this acquisition keeps its weight in
+/// sums with other acquisitions. Benefits and costs: framework/docs/clutter.md.
 struct VarianceReductionOptions : Options {
   double new_object_weight = 1.5;
   void list(Fields& fields) override {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The paper's exploration function e(x) = u(x) * w(x) (Sun and Min 2021, section III). w is the mean of the label GP.
-// The options `label: {prior_mean, clip}` set the prior mean and the clipping of w.
+// Exploration function e(x) = u(x) * w(x) of Sun and Min 2021, section III. u is the relative variance of the height
+// GP, and w is the mean of the label GP. The options `label: {prior_mean, clip}` set the prior mean and the clipping of
+// w.
 #include <palpate/acquisition.hpp>
 #include <palpate/plugin.hpp>
 

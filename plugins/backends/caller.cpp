@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Backend without an arm: the caller's program makes the taps and reports the results, for example through Experiment
-// of the Python module. Area and desk of the scene apply; its objects only if `scene_is_truth` is set. Run::tell()
-// reads the options.
+// of the Python module. The run uses the area and the desk of the scene; it uses the objects only if `scene_is_truth`
+// is set. Run::tell() reads the options.
 #include <palpate/backend.hpp>
 #include <palpate/error.hpp>
 #include <palpate/plugin.hpp>
@@ -10,7 +10,7 @@
 
 namespace palpate::backends {
 
-/// Defaults equal those of the tapping motion.
+/// The defaults equal those of tapping::MotionOptions.
 struct CallerOptions : Options {
   double hover = 0.135;
   double overrun = 0.03;

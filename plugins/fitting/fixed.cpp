@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The fitting of the paper, which keeps the hyperparameters of the config.
+// Keeps the hyperparameters of the config, as Sun and Min 2021 do.
 #include <palpate/fitting.hpp>
 #include <palpate/plugin.hpp>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The paper's label GP as a probability (Sun and Min 2021, section III). The label GP is a regression on labels 0 and
-// 1; its mean is the weight w. The framework clips w to [0, 1].
+// Footprint probability from the label GP of Sun and Min 2021, section III. The label GP is a regression on labels 0
+// and 1; its mean is the weight w. The framework clips w to [0, 1].
 #include <palpate/footprint.hpp>
 #include <palpate/plugin.hpp>
 

@@ -26,7 +26,8 @@ struct PartsOptions : Options {
 ///     static constexpr double kNothing;          value of a combination of no parts
 ///     static void apply(whole, part);            combines the covariances of a part with those of the previous parts
 ///     static void join_slopes(before, own, whole, part);   combines derivatives, one matrix per parameter
-/// In join_slopes(), `before` belongs to the previous parts and `own` to the part. It is called before apply().
+/// In join_slopes(), `before` has the derivatives of the previous parts, and `own` those of the part. It is called
+/// before apply().
 template <class Join>
 class ComposedKernel : public Kernel {
  public:

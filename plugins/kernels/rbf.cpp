@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The squared-exponential kernel of the paper, k = exp(-r^2 / 2) (Sun and Min 2021, section III).
+// Squared-exponential kernel of Sun and Min 2021, section III: k = exp(-r^2 / 2).
 #include "stationary/stationary.hpp"
 
 namespace palpate::kernels {

@@ -109,8 +109,8 @@ Child::~Child() {
     ::kill(-pid_, SIGTERM);
     wait_for_end();
   }
-  // The group is killed before the program is reaped, because the id of the group, which is the process id of the
-  // program, cannot be reused until then.
+  // The group is killed before the program is reaped. Until then, the id of the group cannot be reused, because it is
+  // the process id of the program.
   kill_descendants();
   stderr_.trim();
 }

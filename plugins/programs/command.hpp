@@ -32,9 +32,10 @@ struct ProgramFingerprint {
 };
 
 /// Returns a hash of the command in which the content of the program replaces its name. So the id of a run depends on
-/// the program's content, not on its location. The program is the first word, or the first existing file after an
-/// interpreter; there is none after -m and -c. Programs found by PATH, and folders, count by name. Other words also
-/// count by name, because a program may write the files that they name. Relative paths start in `folder`.
+/// the program's content, not on its location. The program is the first word. If this word is an interpreter, the
+/// program is the first existing file after it; with -m or -c, no file counts as the program. Programs found by PATH,
+/// and folders, count by name. Other words also count by name, because a program may write the files that they name.
+/// Relative paths start in `folder`.
 ProgramFingerprint content_of(const std::vector<std::string>& words, const std::string& folder = {});
 
 /// Returns find_program() of the first word if the content of `command` has this checksum. Otherwise throws Error with

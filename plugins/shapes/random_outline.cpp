@@ -72,8 +72,8 @@ Outline star(double roughness, Random& random) {
   return out;
 }
 
-/// Bends the x axis to an arc of a circle. The map is injective on a star, so no edges cross afterwards. This holds
-/// because no point of the star is as far from the axis as the centre of the circle, and the arc is less than a full
+/// Bends the x axis to an arc of a circle. The map is injective on a star, so no edges cross afterwards. The reasons:
+/// the centre of the circle is farther from the axis than any point of the star, and the arc is less than a full
 /// circle.
 void bend(Outline& outline, Random& random) {
   const auto [left, right, low, high] = bounds(outline);

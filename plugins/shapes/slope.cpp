@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Block whose top rises along its length. It is the paper's object II.
+// Block whose top rises along its length. It is object II of Sun and Min 2021.
 #include "solid.hpp"
 
 namespace palpate::shapes {

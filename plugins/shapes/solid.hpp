@@ -118,8 +118,8 @@ struct Quadric {
 
  private:
   /// Clips an interval if both b and the discriminant are 0. There are three cases. The line is entirely inside or
-  /// outside, it touches the quadric, or it is steep and passes through the apex of a double cone, below which it is
-  /// inside.
+  /// outside; it touches the quadric; or it is steep and passes through the apex of a double cone. A steep line is
+  /// inside below the apex.
   static void clip_double_root(double a, double c, bool down, double shift, Interval& interval) {
     if (a == 0.0 && c > 0.0) interval.clear();
     if (a == 0.0) return;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Block whose top is a wave along its length. It is the paper's object I. For vertical lines, intersections have a
-// closed form. For other lines, bisection and Newton's method find them between the critical points.
+// Block whose top is a wave along its length. It is object I of Sun and Min 2021. For vertical lines, intersections
+// have a closed form. For other lines, bisection and Newton's method find them between the critical points.
 #include <palpate/math.hpp>
 
 #include "solid.hpp"
@@ -92,8 +92,8 @@ class Wave final : public Shape {
   }
 
   /// Returns the first x after `from` where the slope of the clearance may change its sign. The slope along the line is
-  /// u_z + A * k * u_s * sin(k * s), where u is the direction, A the amplitude and k the wave number. The slope is 0
-  /// where sin(k * s) = -u_z / (A * k * u_s), at two positions per period.
+  /// u_z + A * k * u_s * sin(k * s). u is the direction of the line, A the amplitude and k the wave number. The slope
+  /// is 0 where sin(k * s) = -u_z / (A * k * u_s), at two positions per period.
   double next_turn(const Line& line, double from) const {
     const double along = line.direction.x();
     const double steepest = o_.amplitude * k_ * along;
@@ -128,8 +128,8 @@ class Wave final : public Shape {
     const double bottom = std::abs(along) * half_length_;
     if (up <= 0.0) return bottom;
     double best = bottom + up * height_at(half_length_);
-    // On the top, the maximum is at an end of the wave, or on the farthest crest in this direction, where along = up *
-    // A * k * sin(k * s).
+    // On the top, the maximum is at an end of the wave, or near the farthest crest in this direction. There, along = up
+    // * A * k * sin(k * s).
     if (std::abs(along) > up * o_.amplitude * k_) return best;
     const double phase = o_.amplitude > 0.0 ? math::asin(along / (up * o_.amplitude * k_)) : 0.0;
     double s = std::abs(phase) / k_;

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-# Completion for bash by `palpate --complete`. Installed in the folder that bash searches. To complete ./palpate in a
-# clone, source this file.
+# Completion for bash by `palpate --complete`. This file is installed in a folder that bash searches. To complete
+# ./palpate in a clone, source this file.
 # shellcheck shell=bash
 _palpate() {
   local piece open='' kept='' words=()
@@ -14,7 +14,8 @@ _palpate() {
     open=''
     if [[ $piece == [=:] ]]; then open=yes; fi
   done
-  # The part of the last word up to its last = or :. Bash treats this part as a separate word and does not replace it.
+  # `kept` is the part of the last word up to its last = or :. Bash treats this part as a separate word and does not
+  # replace it.
   if [[ ${words[-1]} != [\"\']* ]]; then kept=${words[-1]%"${words[-1]##*[=:]}"}; fi
   mapfile -t COMPREPLY < <("${COMP_WORDS[0]/#\~/$HOME}" --complete "${words[@]#[\"\']}" 2>/dev/null)
   COMPREPLY=("${COMPREPLY[@]%%$'\t'*}")

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-# Completion for fish by `palpate --complete`. Installed in the folder that fish searches. To complete ./palpate in a
-# clone, source this file.
+# Completion for fish by `palpate --complete`. This file is installed in a folder that fish searches. To complete
+# ./palpate in a clone, source this file.
 function __palpate_complete
     set -l words (commandline -opc)
     set -l word (commandline -ct)

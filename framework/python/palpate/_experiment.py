@@ -133,10 +133,11 @@ class Experiment:
         return self._run.taps()
 
     def ask(self, scores=None) -> Tap | None:
-        """Returns the next tap, the same one until tell(). Returns None if the run has ended.
+        """Returns the next tap. Repeated calls return the same tap until tell(). Returns None if the run has ended.
 
-        `scores`: one value per candidate, as a map or row by row, above 0 for a useful tap. The tap goes to the highest
-        score, by the config's rules for ties, repeats and the fallback. The scores replace the config's acquisition.
+        `scores`: one value per candidate, as a map or row by row; useful taps have values above 0. They replace the scores of
+        the config's acquisition. The candidate with the highest score is tapped, and the config's rules for ties, repeats
+        and the fallback apply.
         """
         return self._run.ask(None if scores is None else np.asarray(scores, dtype=float))
 

@@ -53,9 +53,9 @@ def _numbers(texts):
 class Maps:
     """Maps of the belief after `taps` taps; every map is an array of rows x columns.
 
-    `height_mean`, `height_standard_deviation`: of the height, metres; with `surface: two_part`, of an object's height.
-    `uncertainty`: u, the variance relative to the prior, 0 to 1. `weight`: w, the mean of the label GP. `probability`: p, of
-    an object at the position. `surface`: reconstructed height, metres.
+    `height_mean`, `height_standard_deviation`: mean and standard deviation of the height, metres; with `surface: two_part`,
+    of an object's height. `uncertainty`: u, the variance of the height relative to the prior, 0 to 1. `weight`: w, the mean
+    of the label GP. `probability`: p, the probability of an object at the position. `surface`: reconstructed height, metres.
     """
 
     __slots__ = ("taps", "height_mean", "height_standard_deviation", "uncertainty", "weight", "probability", "surface")
@@ -215,8 +215,8 @@ class Sweep:
             yield self[job]
 
     def experiments(self, retry_failed=False):
-        """Yields the Experiment of each job of begin_sweep() that has not ended, or with `retry_failed` has failed. Close each
-        experiment, for example by `with`, before the next."""
+        """Yields one Experiment per job of begin_sweep() that has not ended; with `retry_failed`, also per failed job. Close each
+        experiment, for example by `with`, before the next job."""
         if len(self._directories) > 1:
             raise make_error("experiments", "this Sweep combines several sweeps", "call experiments() of each single sweep")
         try:

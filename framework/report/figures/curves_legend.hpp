@@ -36,8 +36,8 @@ struct LegendEntry {
   std::vector<std::string> lines;
 };
 
-/// Places names side by side from `left` on, in a figure with this width. A name that is wider than the figure is
-/// broken into several rows, which it shares with no other name.
+/// Places names side by side, beginning at `left`, in a figure with this width. A name that is wider than the figure is
+/// broken into several rows, and these rows contain no other name.
 std::vector<LegendEntry> place_names(const std::vector<std::string>& names, double left, double width);
 
 /// Draws bands, lines, marks and names of the groups.

@@ -64,7 +64,7 @@ class FigureLayout {
 
   int width() const { return width_; }
   int height() const { return height_; }
-  /// Returns the script without the settings of terminal and output.
+  /// Returns the script, which does not set terminal and output.
   std::string script() const;
 
   /// Returns gnuplot's `screen` coordinates of a point in pixels from the upper left corner.
@@ -78,8 +78,8 @@ class FigureLayout {
   /// `next_NAME` ("x y"), in centimetres.
   void taps(const std::string& name, const MapsAtTap& snapshot);
 
-  /// Adds text of one or more lines with its upper edge at `top`. `x` is the left end or the middle of the lines, as
-  /// `align` says.
+  /// Adds text of one or more lines with its upper edge at `top`. `x` is the left end of the lines, or their middle
+  /// with Align::centre.
   enum class Align { left, centre };
   void text(const std::string& words, double x, double top, int points, Align align = Align::left);
   /// Adds one vertical line of text with its middle at `middle`, left of a row of panels.

@@ -46,8 +46,8 @@ std::string write_curves_figure(const GroupCurves& curves, const std::string& ti
 Figures write_paper_figures(const RunEnvironment& environment, const RecordedRun& recording,
                             const std::filesystem::path& folder);
 
-/// Draws `figure_2` to `figure_5`, which reproduce these figures of the paper, from a sweep with the necessary jobs.
-/// Throws the errors of write_run_figures(), and Error if every figure lacks jobs.
+/// Draws `figure_2` to `figure_5` from a sweep with the necessary jobs. They reproduce figures 2 to 5 of the paper (Sun
+/// and Min 2021). Throws the errors of write_run_figures(), and Error if every figure lacks jobs.
 Figures write_paper_figures(const RunEnvironment& environment, const Sweep& sweep, const std::filesystem::path& folder);
 
 }  // namespace palpate

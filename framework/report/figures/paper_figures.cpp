@@ -104,8 +104,8 @@ void draw_row(FigureLayout& layout, const PanelRow& row, double top, const Box& 
 }
 
 /// Returns the states of the run at these iterations of the paper. Iteration k of the paper is the state after the
-/// initial taps and k - 1 further taps. If the run ended before an iteration, the state after its last tap is shown
-/// instead, and all later iterations are left out.
+/// initial taps and k - 1 further taps. If the run ended before an iteration, the state after the run's last tap is
+/// shown instead, and all later iterations are left out.
 RunSnapshots progress_of(const RunEnvironment& environment, const RecordedRun& recording,
                          const std::vector<int>& iterations) {
   const int all = static_cast<int>(recording.taps.size());

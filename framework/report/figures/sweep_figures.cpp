@@ -272,8 +272,8 @@ std::optional<Figure> heat_map(const Sweep& sweep, const std::vector<Row>& resul
   return Figure{"heat_map", std::move(layout)};
 }
 
-/// Returns curves of the error against the taps. The keys curve_keys() form the groups. Returns nullopt unless the
-/// values after each tap are stored.
+/// Returns curves of the error against the taps. Jobs with equal values of the keys that curve_keys() returns form a
+/// group. Returns nullopt unless the values after each tap are stored.
 std::optional<GroupCurves> kept_curves(const Sweep& sweep, const std::vector<Row>& results) {
   if (!TapSummaries::any_kept(sweep)) return std::nullopt;
   std::vector<TapValues> values(sweep.jobs.size());

@@ -21,7 +21,7 @@ namespace palpate {
 namespace {
 
 /// Returns a script element that contains `bytes` in base64. Browsers do not execute scripts of this type; a script of
-/// the page unpacks the bytes, as `format` says.
+/// the page unpacks the bytes, which are compressed in `format`.
 std::string packed(const char* name, const char* format, std::string_view bytes) {
   return fmt::format("<script type=\"application/{}\" id=\"{}\">{}</script>\n", format, name, base64(bytes));
 }

@@ -21,7 +21,8 @@ namespace palpate {
 /// Origin of a page: a file, or a server to which the page may send requests.
 enum class PageOrigin { file, server };
 
-/// Returns a page that runs the common script and then `script`, on the data and the bytes of the maps.
+/// Returns a page that runs the common script and then `script`. The scripts draw `data` and `maps`, the bytes of the
+/// maps.
 std::string make_page(std::string_view script, const Json& data, const std::string& maps,
                       PageOrigin of = PageOrigin::file);
 

@@ -282,8 +282,8 @@ std::string add_maps(Json& data, const History& history, std::size_t stride, std
 std::string run_page(const RecordedRun& recording, const History& history, const OnProgress& progress) {
   Json data = run_data(recording, history);
   const int last = history.moments.back().taps;
-  // Compressed maps have at least a tenth of their size. With more than kMostRaw bytes of maps, the page would be too
-  // large.
+  // Compression reduces maps to a tenth of their size at best. With more than kMostRaw bytes of uncompressed maps, the
+  // page would be too large.
   constexpr double kMostRaw = 19e6;
   double raw = 0.0;
   for (const MapSeries& one : history.maps)

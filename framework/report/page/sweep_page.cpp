@@ -274,7 +274,7 @@ PageJobs read_page_jobs(const Sweep& sweep, std::size_t step, const OnProgress& 
   return out;
 }
 
-/// Adds to the data of a page: the columns with their mean per setting, and the fronts.
+/// Adds to `data` the columns, each with its mean per setting, and the Pareto fronts.
 void add_columns(Json& data, const Sweep& sweep, const std::vector<JobResult>& jobs,
                  const std::vector<NumberColumn>& columns, const std::vector<std::size_t>& units) {
   const std::vector<PageSetting> settings = settings_of(sweep, jobs);

@@ -256,7 +256,7 @@ class FromAboveExplanation final : public Explanation {
     text_.add(text);
   }
 
-  /// Adds whether the tap was suspected to be an outlier right after it was made, and whether it is suspected after all
+  /// Adds remarks on whether the tap was a suspected outlier right after it was made, and whether it is one after all
   /// taps.
   void explain_doubt() {
     if (belief_option(options_, "height.outlier_probability").empty() || !tap_.is_contact()) return;

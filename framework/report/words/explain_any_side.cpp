@@ -96,7 +96,7 @@ class AnySideExplanation final : public Explanation {
     explain_second(scores, now->candidate);
   }
 
-  /// Adds the expected effects of the tap, if the acquisition uses them for its scores.
+  /// Adds the expected effects of the tap, if the acquisition computes its scores from these effects.
   void explain_gains(int chosen) {
     const auto add = [&](const char* quantity, const char* sentence) {
       if (belief_.available().count(quantity) == 0) return;

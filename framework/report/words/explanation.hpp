@@ -26,14 +26,15 @@ class Explanation {
 
   std::string heading(const std::string& where) const;
   std::string acquisition_words() const;
-  /// Adds a remark about the second best candidate, at `where`, with the score `second`. `score`: score of the chosen
-  /// candidate.
+  /// Adds a remark about the second best candidate. `where`: its position or line as text; `second`: its score;
+  /// `score`: score of the chosen candidate.
   void explain_runner_up(const std::string& where, double score, double second);
   /// Adds a remark if the contact's label changed after the tap.
   void explain_label();
   /// Adds a remark if the run failed at this tap.
   void explain_failure();
-  /// Adds how the tap changed the errors. `before` and `after` are rows with the errors before and after the tap.
+  /// Adds a remark on the change of the errors by the tap. `before` and `after` are rows with the errors before and
+  /// after the tap.
   void explain_errors(const Row& before, const Row& after);
 
   const RunEnvironment& environment_;

@@ -10,7 +10,7 @@
 
 namespace palpate {
 
-/// Range of the heights that an arm can have measured, metres, in the frame of the scene.
+/// Range of the heights that an arm can measure, metres, in the frame of the scene.
 struct HeightBounds {
   double lowest;
   double highest;
@@ -21,18 +21,18 @@ struct HeightBounds {
 constexpr HeightBounds kAnyArm{-10.0, 10.0, "no arm is that long"};
 
 /// Returns the bounds for a tap from above. The tool travels at the height `desk` + `hover` and descends at most to
-/// `desk` - `overrun`, metres. The lower bound is 1 cm below this end, because an arm's height has errors. The upper
-/// bound is the height of travel, because the arm would have hit a higher object on its way.
+/// `desk` - `overrun`, metres. The lower bound is 1 cm below the end of the descent, because an arm's height has
+/// errors. The upper bound is the height of travel, because the arm would have hit a higher object on its way.
 HeightBounds height_bounds(double desk, double overrun, double hover);
 
-/// The two parts of a one-line message about a value that no arm can have measured.
+/// The two parts of a one-line message about a value that no arm can measure.
 struct AnswerFault {
   std::string reason;
   std::string remedy;
 };
 
-/// Completes an answer that has only the touched point or only the distance along `line`: computes the other of both.
-/// On a line from above, the result has a point on this line and no distance.
+/// Completes an answer that has only the touched point or only the distance along `line`, by computing the missing one
+/// of these two values. On a line from above, the result has a point on this line and no distance.
 void complete_contact(const TapLine& line, TapResult& answer);
 
 /// Returns a message about the first value of an answer that is out of its bounds or not finite; nullopt if there is

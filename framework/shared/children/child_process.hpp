@@ -42,8 +42,8 @@ class Descriptor {
 };
 
 /// Takes ownership of `number`, the result of open(), and moves it above the numbers of the standard files (0 to 2).
-/// open() returns such a number if this process was started without standard files, and a child's standard files would
-/// then overwrite the file. Returns an empty Descriptor, and keeps errno, if `number` is negative.
+/// open() returns a number from 0 to 2 if this process was started without standard files. A child's standard files
+/// would then replace the opened file. Returns an empty Descriptor, and keeps errno, if `number` is negative.
 Descriptor above_standard(int number);
 
 /// Both ends of a pipe, with numbers above the standard files. The flag O_CLOEXEC is set when the pipe is created,
@@ -115,7 +115,7 @@ class ChildProcess {
 
   /// Sends a signal to the child, unless it has ended.
   void signal(int number) const;
-  /// Closes the pipe. A forked child calls this function for its siblings, whose pipes it has inherited.
+  /// Closes the pipe. A forked child inherits the pipes of its siblings and closes them by this function.
   void forget() { pipe_.close(); }
 
  private:

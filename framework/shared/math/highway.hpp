@@ -3,11 +3,11 @@
 // defines HWY_TARGET_INCLUDE as its own path and includes this header. Highway includes the file once per set, so this
 // header has no include guard. The loops are in HWY_NAMESPACE, and PALPATE_DISPATCH(function)(arguments) calls them.
 //
-// Only Highway's headers are used. Highway's library could select the set, too, but it measures clocks when it is
-// loaded, which takes a fifth of a short run. The assertions of debug builds need the library, so they are switched
-// off.
+// Only Highway's headers are used. Highway's library could select the set, too. But the library measures clocks when it
+// is loaded, which takes a fifth of the time of a short run. The assertions of debug builds need the library, so they
+// are switched off.
 //
-// The sets on x86 are the baseline SSE2, AVX2 and AVX-512 (AVX3 in Highway). The only set on 64-bit ARM is NEON, its
+// The sets on x86 are SSE2 (the baseline), AVX2 and AVX-512 (AVX3 in Highway). The only set on 64-bit ARM is NEON, its
 // baseline. SVE is not used, because the size of its vectors is unknown to the compiler, so arrays of them do not
 // compile.
 #ifndef PALPATE_DISPATCH

@@ -29,8 +29,9 @@ constexpr std::uintmax_t kMostSystemBytes = std::uintmax_t{16} << 20;  ///< a fi
 
 /// Source of a file's name.
 enum class FileOrigin {
-  user,   ///< the name is from a command line, a config of the user, or the installation: links are followed
-  record  ///< the file is in a record, maybe of another user: links, even to the folder of a job, are not followed
+  user,  ///< the name is from a command line, a config of the user, or the installation: links are followed
+  /// the file is in a record, possibly of another user: no links are followed, not even a link to the folder of a job
+  record
 };
 
 /// Result of reading a file.

@@ -29,9 +29,9 @@ constexpr double kPivotGuard = 1.0;
 constexpr double kFirstJitter = 10.0;
 constexpr double kLastJitter = 100.0;
 
-/// Smallest noise variance, in the same units, for quadratic forms that are computed with an explicit inverse. The
-/// entries of the inverse reach 1 / noise, and a quadratic form is a small difference of their products. With this
-/// noise variance, the error of the form is at most 1e-5 of the largest diagonal entry.
+/// Smallest noise variance for quadratic forms that are computed with an explicit inverse, in units of n * eps times
+/// the largest diagonal entry. The entries of the inverse reach 1 / noise, and a quadratic form is a small difference
+/// of their products. With this noise variance, the error of the form is at most 1e-5 of the largest diagonal entry.
 constexpr double kInverseNoise = 1e5;
 
 /// Returns whether `square` is larger than its rounding error. `square` is the squared pivot of row `row` (counted from
@@ -48,9 +48,10 @@ std::vector<int> independent_rows(const Eigen::MatrixXd& covariance);
 /// Numerical diagnostics of the factorisations of one model, for the record. If the covariance of a model is factorised
 /// again at every tap, the counts include every factorisation.
 struct FactorReport {
-  double jitter = 0.0;     ///< variance currently added to the diagonal besides the noise, unit of the matrix
+  /// variance that is currently added to the diagonal in addition to the noise, in the unit of the matrix
+  double jitter = 0.0;
   int raised = 0;          ///< number of increases of the jitter
-  int pivoted = 0;         ///< number of factorisations of independent rows, because no jitter helped
+  int pivoted = 0;         ///< number of factorisations of only the independent rows, because no jitter helped
   int redundant_taps = 0;  ///< number of rows that are currently left out
 
   /// Adds the counts of another model that has the same rows. Jitter and redundant taps become the maximum of both.
@@ -64,7 +65,8 @@ struct FactorReport {
 
 /// Factorises n rows with the smallest sufficient amount of jitter. attempt() factorises with report.jitter and returns
 /// whether all pivots are regular. While attempt() fails, the jitter is increased. If attempt() fails with the last
-/// amount, pivot() is called, which factorises only the independent rows. `scale` is the largest diagonal entry.
+/// amount, regularise() calls pivot(), which must factorise only the independent rows. `scale` is the largest diagonal
+/// entry.
 template <class Attempt, class Pivot>
 void regularise(FactorReport& report, Eigen::Index n, double scale, const Attempt& attempt, const Pivot& pivot) {
   const double unit = static_cast<double>(n) * kEpsilon * scale;

@@ -28,7 +28,8 @@ const ProgramMap* find_map(const std::string& name);
 /// Returns the length of the header that follows the first kNpyStart bytes of an NPY file. Throws std::runtime_error
 /// unless the bytes start an NPY file of version 1. The message continues the text "the program answered with ".
 std::size_t header_length(const std::string& start);
-/// Throws std::runtime_error with a message of this form unless the header describes `count` numbers of type '<f8'.
+/// Throws std::runtime_error, with a message like that of header_length(), unless the header describes `count` numbers
+/// of type '<f8'.
 void check_header(const std::string& text, Eigen::Index count);
 
 }  // namespace palpate::program

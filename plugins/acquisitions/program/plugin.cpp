@@ -293,7 +293,8 @@ class ProgramAcquisition final : public Acquisition {
     }
   }
 
-  /// Returns the path of a file of this program in the run's folder. Each program in a sum has separate files.
+  /// Returns the path of a file of this program in the run's folder. If a sum contains several programs, each has its
+  /// own files.
   std::string in_record(const std::string& ending) const {
     constexpr std::size_t kEnough = 8;
     return context_.directory + "/acquisition_" + options_.checksum.substr(0, kEnough) + ending;

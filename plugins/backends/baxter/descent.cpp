@@ -21,17 +21,21 @@ using AllowedAction = Fault::AllowedAction;
 constexpr double kMostPullReadings = 6.0;
 constexpr double kFewestPullReadings = 3.0;
 constexpr double kPullTime = 0.12;
-constexpr double kEvenFrom = 0.7;  ///< s until an arm that lags 0.35 s behind its set-point descends at constant speed
-/// s: end of the average of the force; later if there are fewer than kFewestEven readings
+/// s, start of the average of the force: an arm that lags 0.35 s then descends at constant speed
+constexpr double kEvenFrom = 0.7;
+/// s after the start of the descent at which averaging of the force ends; it ends later if there are fewer than
+/// kFewestEven readings
 constexpr double kEvenTo = 1.0;
 constexpr std::size_t kFewestEven = 10;
 /// Conditions for an arm that falls behind without a contact. A blocked arm presses with at least 0.5 * stiffness *
-/// lag. This force must exceed the threshold by kBlockedForce (N), although the measured force is small. A lag below
-/// kLeastLag (m) may come from a posture that sags more.
+/// lag. It is a fault if this force exceeds the threshold by kBlockedForce (N) while the measured force is small. A lag
+/// below kLeastLag (m) may come from a posture that sags more.
 constexpr double kBlockedForce = 2.0;
 constexpr double kLeastLag = 0.003;
-constexpr int kQuietReadings = 3;  ///< number of consecutive readings near the zero that exclude the start of a contact
-/// N, largest difference between the means of both halves; noise of 1.5 N causes 0.55 N
+/// number of consecutive readings near the force zero that exclude the start of a contact
+constexpr int kQuietReadings = 3;
+/// N, largest difference between the mean forces of the first and the second half of the readings; noise of 1.5 N
+/// causes 0.55 N
 constexpr double kSteadyForce = 1.5;
 /// N: smallest limit of the change of the force zero during a tap; noise causes 0.4 N
 constexpr double kLeastZeroChange = 2.5;
@@ -59,8 +63,8 @@ class ConstantSpeedForce {
   bool done_ = false;
 };
 
-/// Control periods in which the arm descends at constant speed: all until now, and all until the last detection of a
-/// contact.
+/// Control periods in which the arm descends at constant speed. `now` has all periods so far, and `at_notice` those up
+/// to the last detection of a contact.
 struct ConstantSpeedPeriods {
   std::vector<ReactionTime::Period> now;
   std::vector<double> lags;  ///< m by which the tip trails its set-point in each period
@@ -121,7 +125,7 @@ class SignedTap {
   double next(double height, double force, bool fresh) {
     for (SignTrial& one : taps_) one.set_point = one.tap.next(height, one.sign * force, fresh);
     if (taps_.size() == 2 && taps_.front().set_point != taps_.back().set_point) {
-      // The tap with the contact puts its set-point at the height of the arm.
+      // The tap that detects the contact sets its set-point to the height of the arm.
       const bool second = taps_.back().set_point == height;
       taps_.erase(second ? taps_.begin() : taps_.begin() + 1);
     }
@@ -222,8 +226,8 @@ void Tapper::update(DescentState& way) {
   expect_following(way);
 }
 
-/// Throws Fault if the arm falls behind its set-point without a contact force: something blocks it, and it would jump
-/// down to its set-point once it comes free.
+/// Throws Fault if the arm falls behind its set-point without a contact force. Something then blocks the arm, and it
+/// would jump down to its set-point once it comes free.
 void Tapper::expect_following(const DescentState& way) const {
   if (way.quiet < kQuietReadings || way.tap.tap().done()) return;
   const double behind = way.periods.behind(reaction_.noticing() + reaction_.lateness());
@@ -256,8 +260,8 @@ void Tapper::tare(DescentState& way) {
   guard_.set_tare(zero_);
 }
 
-/// Evaluates a new reading during the descent. `felt`: measured force along z without the force of the motion (N).
-/// `beside`: force of the motion (N).
+/// Evaluates a new reading during the descent. `beside`: force of the motion in N, the difference between a free
+/// descent and rest. `felt`: measured force along z minus the force of the motion (N).
 void Tapper::evaluate_force(DescentState& way, double felt, double beside, bool coming_down) {
   const double zero = way.tap.zero();
   const double against = sign_ == 0.0 ? std::abs(felt - zero) : sign_ * (felt - zero);
@@ -265,7 +269,7 @@ void Tapper::evaluate_force(DescentState& way, double felt, double beside, bool 
   const bool two_stage = way.motion.type == tapping::MotionOptions::Type::two_stage;
   const double least = two_stage ? std::min(way.motion.threshold, way.motion.fine_threshold) : way.motion.threshold;
   way.quiet = std::abs(felt - zero) < 0.5 * least ? way.quiet + 1 : 0;
-  // While the arm stops at a contact the force belongs to the contact, and noise may raise it above force_stop.
+  // force_stop does not apply while the arm stops at a contact: noise may raise the force of the contact above it.
   if (way.tap.tap().presses_no_further()) {
     guard_.forget_tare();
   } else {

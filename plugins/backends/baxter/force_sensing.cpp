@@ -18,9 +18,10 @@ using AllowedAction = Fault::AllowedAction;
 constexpr std::size_t kForceSamples = 25;        ///< number of new readings for the force at rest
 constexpr std::size_t kFewestForceSamples = 12;  ///< minimum number of readings after kForcePatience
 constexpr double kForcePatience = 1.0;           ///< s
-constexpr double kMostForcePatience = 3.0;       ///< s; later the measurement has failed
+constexpr double kMostForcePatience = 3.0;       ///< s after which the measurement has failed
 constexpr int kLoggedTaps = 3;                   ///< number of taps per run whose force of motion is logged
-/// limit of the force of motion, as a fraction of the threshold; a larger force may be the onset of a contact
+/// Largest accepted force of the motion (difference between a free descent and rest), as a fraction of the threshold. A
+/// larger difference may be the onset of a contact.
 constexpr double kMostMoving = 0.8;
 
 /// Clearance in m at which a slow rise ends: the tool is free, and the friction of the joints has changed its
@@ -32,7 +33,8 @@ constexpr double kReversalFriction = 1.4;  ///< ratio of friction during a rever
 /// m/s: an arm of 6.4 kN/m whose tool is caught pulls 2 N more within three readings
 constexpr double kGentleSpeed = 0.01;
 constexpr double kAcceleration = 0.15;  ///< m/s^2, after the slow rise
-/// Additional pull in N that a faster rise may show, because of its speed and of a zero that changes by 50 N/m.
+/// Additional pull in N that a faster rise may show, because of its speed and of a zero that changes by 50 N per metre
+/// of height.
 constexpr double kSpeedPull = 2.0;
 constexpr double kMovingNoise = 0.5;  ///< N: two standard deviations of the mean of 30 readings
 constexpr double kSmoothing = 0.2;    ///< weight of the last reading in a moving average of the force
@@ -163,8 +165,8 @@ void Tapper::retreat(const Path& up, double sign, double zero, const tapping::He
 
 /// Rises slowly until the tip is `gently` metres higher, then faster. While the tool still presses, the slow part lasts
 /// up to kExtraRise metres longer. During the slow part, the pressure disappears and friction changes its direction.
-/// Afterwards the zero follows its change with the pose. `zero`: force along z of a free arm, N; if absent, the force
-/// after the slow part.
+/// Afterwards the zero follows the force, because the bias of the force changes with the pose. `zero`: force along z of
+/// a free arm, N; if absent, the force after the slow part takes its place.
 void Tapper::rise(const Path& up, double gently, double sign, const std::optional<double>& zero) {
   const double limit = largest_pull(up, 0.0);
   if (sign != 0.0 && zero) guard_.expect_rise(MotionGuard::RiseLimits{*zero, sign, limit});

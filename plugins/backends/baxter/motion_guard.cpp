@@ -198,7 +198,7 @@ std::optional<Fault> MotionGuard::rate_fault(const Snapshot& seen) const {
                AllowedAction::hold};
 }
 
-/// Checks the rules whose violation forbids every set-point, even the measured joints.
+/// Checks the rules whose violation forbids every set-point, even one that equals the measured joints.
 std::optional<Fault> MotionGuard::check_state(const Snapshot& seen, bool moving, double gap) {
   if (!seen.malformed.empty()) return Fault{seen.malformed};
   if (!seen.state || !seen.joints || !seen.endpoint) return Fault{"joints, endpoint and state were not all received"};

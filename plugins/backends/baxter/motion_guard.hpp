@@ -96,7 +96,7 @@ class Renewals {
   /// Returns the required number of renewals in ReadingCounter::kWindow: half of the largest number so far, limited to
   /// the range from kFewest to ReadingCounter::kFewest.
   int needed() const { return std::clamp(most_ / 2, kFewest, ReadingCounter::kFewest); }
-  /// Returns whether the period of the renewals is known; this takes three renewals.
+  /// Returns whether the period at which the robot renews the force is known; measuring it takes three renewals.
   bool known() const { return known_; }
   double messages() const { return messages_; }  ///< messages per renewal, measured
   double seconds() const { return seconds_; }    ///< seconds per renewal, measured
@@ -118,9 +118,9 @@ class Renewals {
   double seconds_ = 0.01;
 };
 
-/// Checks all safety rules. Limits come from published properties of the robot: its firmware stops at 16 N, drops
-/// commands after 0.2 s, and the arm lags behind its set-point by 0.3 to 0.4 s. Other limits are several times the
-/// values of a sound robot.
+/// Checks all safety rules. Limits come from published properties of the robot. Its firmware stops the arm at 16 N and
+/// drops commands after 0.2 s, and the arm lags behind its set-point by 0.3 to 0.4 s. Other limits are several times
+/// the values of a sound robot.
 class MotionGuard {
  public:
   static constexpr double kFresh = 0.1;       ///< s, largest age of joints and endpoint, which arrive every 0.01 s
@@ -128,7 +128,8 @@ class MotionGuard {
   static constexpr double kLate = 0.3;        ///< s by which the delay of a message may exceed the least delay so far
   static constexpr double kDrift = 1e-3;  ///< s per second, largest drift between the robot's clock and this computer's
   static constexpr int kFrozen = 10;      ///< a force that is equal for this number of renewal periods is a fault
-  static constexpr int kFewestFrozen = 4;    ///< fewer equal periods, which are a fault if they last kFrozenFor
+  /// from this number of periods on, an equal force is a fault if it lasts kFrozenFor
+  static constexpr int kFewestFrozen = 4;
   static constexpr double kFrozenFor = 0.1;  ///< s
   /// rad, largest change between two readings; 4 rad/s of the wrist are 0.04 rad per period
   static constexpr double kJump = 0.06;
@@ -191,8 +192,8 @@ class MotionGuard {
   /// Returns the fault of the first broken rule, else nullopt. `tip`: position of the tip in the scene's frame, from
   /// the joints in `seen`.
   std::optional<Fault> check(const Snapshot& seen, const Eigen::Vector3d& tip);
-  /// Performs only the part of check() that does not depend on our own motion: marks new readings and checks their
-  /// rates, which are known half a second after begin().
+  /// Performs only the part of check() that does not depend on the arm's motion: marks new readings and checks their
+  /// rates. The rates are known half a second after begin().
   std::optional<Fault> check_rates(const Snapshot& seen);
   /// Returns an upper bound in s of the present lateness of set-points and readings together. It is the maximum of
   /// twice the excess delay of the latest joints or force, and the delay of this program's last read.
@@ -262,7 +263,7 @@ class MotionGuard {
   Renewals renewals_;
   bool fresh_ = false;
   double collision_received_ = -std::numeric_limits<double>::infinity();  ///< time of the latest message
-  bool collision_streams_ = false;  ///< whether the last two arrived within kStateFresh
+  bool collision_streams_ = false;  ///< whether the last two messages arrived within kStateFresh
   Delay joint_delay_;
   Delay endpoint_delay_;
 };

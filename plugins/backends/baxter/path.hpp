@@ -98,7 +98,7 @@ class Planner {
 };
 
 /// Calls `plan` on a grid of `spacing` metres over the area and returns the number of positions. Throws Error (kind
-/// `run`) with the number of positions where `plan` threw NoPath, and the reason of the first.
+/// `run`) with the number of positions where `plan` threw NoPath, and the reason of the first exception.
 int check_reach(const Area& area, double spacing, const std::function<void(const Target&)>& plan);
 
 }  // namespace palpate::baxter

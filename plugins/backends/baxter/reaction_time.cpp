@@ -10,7 +10,7 @@
 namespace palpate::baxter {
 namespace {
 
-constexpr std::size_t kMotions = 5;  ///< number of last motions whose maximum counts
+constexpr std::size_t kMotions = 5;  ///< the trailing time is the maximum of this number of latest motions
 /// number of last contacts in the mean; five with a soft object leave an uncertainty of 0.1 s
 constexpr std::size_t kContacts = 10;
 constexpr double kFades = 30.0;          ///< s: time constant with which a lateness decays
@@ -18,7 +18,9 @@ constexpr std::size_t kFewest = 30;      ///< minimum number of periods of a fre
 constexpr double kClear = 0.001;         ///< m above the onset from which the tip counts as free
 constexpr double kLeastNoticing = 0.04;  ///< s: three readings at 100 Hz, and one control period
 constexpr double kRiseFor = 0.1;         ///< s before a detection in which the slope of the force is measured
-constexpr double kMostNoticing = 0.5;    ///< s, upper limit beyond kRenewals renewals; longer rises are not steady
+/// s, upper limit of a measured noticing time, not counting kRenewals renewal periods of the force; a rise of the force
+/// that lasts longer is not steady
+constexpr double kMostNoticing = 0.5;
 /// Two standard deviations of the assumed noticing time until the first contact, s, and the weight of this assumption,
 /// 1/s^2.
 constexpr double kFirst = ReactionTime::kFirstNoticing - kLeastNoticing;

@@ -6,10 +6,10 @@
 // where k is the vertical stiffness of the springs. None of these times is published, and each depends on the robot,
 // its firmware and its network:
 // - noticing: from the moment when the true force equals the threshold to the set-point that stops the arm. It includes
-//   the filter of the force, the delay of messages, and the readings that make a contact. During a contact the true
-//   force follows from positions, which no filter delays: k times the distance by which the tip lags behind its free
-//   descent. If the force rises slowly, as on a soft object, noise moves the detection much earlier or later. So
-//   contacts are weighted by the slope of their force.
+//   the filter of the force, the delay of messages, and the readings that make a contact. During a contact, the true
+//   force is computed from positions, which no filter delays. It is k times the distance by which the tip lags behind
+//   its free descent. If the force rises slowly, as on a soft object, noise moves the detection much earlier or later.
+//   So contacts are weighted by the slope of their force.
 // - stopping: from that set-point to standstill. It includes the delay of commands and joints, and the further motion
 //   of the joints. All of these make the arm lag behind its set-point. The bound is therefore the time by which the arm
 //   lags, minus the least lag of the joints themselves, plus their further motion.
@@ -38,21 +38,21 @@ class ReactionTime {
   static constexpr double kSlowest = 0.002;
   /// m/s: limit until the first measured contact. Until then the delays of the slowest supported robot are assumed.
   static constexpr double kSlowestFirst = 0.001;
-  static constexpr double kLookedAt = 1.5;      ///< s, length of the used last part of a descent
-  static constexpr double kShortestWay = 0.06;  ///< m: shortest motion that is used
+  static constexpr double kLookedAt = 1.5;      ///< s; only this last part of a descent is used
+  static constexpr double kShortestWay = 0.06;  ///< m; shorter motions are ignored
   /// Number of renewals of the force until a contact is detected: the three readings of a contact, and one spoilt by
   /// noise.
   static constexpr double kRenewals = 4.0;
-  /// Assumed noticing and trailing times in s until they are measured. The values belong to the slowest supported robot
-  /// with a force renewed 100 times a second.
+  /// Noticing time (see above) and trailing time (lag of the arm behind its set-point) in s that are assumed until they
+  /// are measured. The values belong to the slowest supported robot with a force renewed 100 times a second.
   static constexpr double kFirstNoticing = 0.23;
   static constexpr double kFirstTrailing = 0.55;
   /// Standard deviation of the force at which a contact is detected, N. Noise of 1.5 N causes 0.5 to 0.9 N, and more if
   /// the force rises faster.
   static constexpr double kNoise = 0.7;
 
-  /// Records that messages or this program are `seconds` late at time `now`. lateness() is the maximum, which decays
-  /// with the time constant kFades.
+  /// Records that messages or this program are `seconds` late at time `now`. lateness() returns the largest value so
+  /// far, which decays with the time constant kFades.
   void late(double seconds, double now);
 
   /// Records the period in seconds in which the robot renews its force. A detection takes at least kRenewals periods.

@@ -21,14 +21,14 @@ constexpr double kStepClamp = 0.05;          ///< rad: a set-point must be this 
 constexpr double kArrivalTolerance = 0.015;  ///< rad: settled errors are up to 0.008
 constexpr double kRestTolerance = 0.002;     ///< rad: largest change within kRestTime of an arm that rests
 constexpr double kRestTime = 0.1;            ///< s
-constexpr double kSettlingTimeout = 5.0;     ///< s: after a stop the arm needs two
+constexpr double kSettlingTimeout = 5.0;     ///< s: after a stop the arm needs two seconds
 
 constexpr double kHoldTime = 0.5;       ///< s for which the measured joints are sent at a stop
-constexpr double kReflexTimeout = 4.0;  ///< s: the firmware's own stop lasts two
+constexpr double kReflexTimeout = 4.0;  ///< s: the firmware's own stop lasts two seconds
 constexpr int kMaxReflexes = 20;        ///< reflexes of the firmware that are tolerated while a pressing arm rises
-constexpr double kFrictionPull = 3.5;   ///< N below zero that friction can cause while the arm presses
-constexpr double kAboveTravel = 0.3;    ///< m: largest height above the height of travel
-constexpr double kBelowFloor = 0.01;    ///< m: largest depth below the end of a descent
+constexpr double kFrictionPull = 3.5;   ///< N of apparent pull that friction can cause while the arm presses
+constexpr double kAboveTravel = 0.3;    ///< m by which the tip may be above the height of travel
+constexpr double kBelowFloor = 0.01;    ///< m by which the tip may be below the end of a descent
 
 /// Limits speed and threshold for the first contact with a desk of unknown hardness.
 tapping::MotionOptions gentle(tapping::MotionOptions motion) {

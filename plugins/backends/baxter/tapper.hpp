@@ -50,7 +50,7 @@ class Tapper {
   static constexpr double kPeriod = tapping::GuardedTap::kPeriod;
   static constexpr double kNearTravel = 0.01;  ///< m by which the tip may be below the height of travel
   static constexpr double kGentleRise = 0.01;  ///< m of a slow rise for an arm that may press
-  /// m: upper limit of that rise, because supported objects yield less.
+  /// m: upper limit of the slow rise. Supported objects yield by less than this.
   static constexpr double kMostGentleRise = 0.02;
   static constexpr const char* kSilent = "no more commands are sent, the arm stays where it is";
   /// Height of travel above `hover`, m. The arm descends from there to the position where it rests for the tare, so

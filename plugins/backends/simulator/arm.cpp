@@ -40,7 +40,7 @@ double maximum_over_disc(Height height, double radius, double least, Rise rise) 
     return true;
   };
   for (int ring = 1; ring <= kRings; ++ring) {
-    // The points are slightly inside the disc, because rounding could otherwise exclude those on its rim.
+    // The points are slightly inside the disc, because rounding could otherwise exclude the points on its rim.
     const double distance = radius * ring / kRings * (1.0 - 1e-12);
     for (int spoke = 0; spoke < kSpokes; ++spoke) {
       const double angle = 2.0 * kPi * spoke / kSpokes;
@@ -60,8 +60,8 @@ double maximum_over_disc(Height height, double radius, double least, Rise rise) 
   return best;
 }
 
-/// Returns the height of the tool's lowest point when any part of the tool touches. height_at(dx, dy) is the height of
-/// the scene at a displacement from the tool's axis. No height exceeds `highest`.
+/// Returns the height of the tool's lowest point at which any part of the tool first touches the scene. height_at(dx,
+/// dy) is the height of the scene at a displacement from the tool's axis. No height exceeds `highest`.
 template <class Height>
 double touch_height(const Effects& effects, double highest, const Height& height_at) {
   double height = height_at(0.0, 0.0);

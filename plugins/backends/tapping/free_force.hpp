@@ -13,7 +13,7 @@ struct Sample {
 };
 
 /// Straight line fitted to the force over the last centimetres of free travel. The zero of an estimated force depends
-/// on the pose of the arm, so a tare at the height of travel is wrong by several newtons further down.
+/// on the pose of the arm, so a tare at the height of travel is wrong by several newtons at lower heights.
 class FreeForce {
  public:
   /// `gap`: samples less than this distance above the tip (metres) are ignored, because they may contain a soft

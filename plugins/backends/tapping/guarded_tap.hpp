@@ -39,8 +39,9 @@ constexpr const char* kTooLong = "the tap took longer than motion.timeout";
 /// In each period the caller passes the measured height and force, and whether the force is new. The caller then
 /// commands the returned set-point. A contact is detected after three consecutive new readings above the threshold. The
 /// reaction depends on the motion:
-/// - paper: the set-point stays until the end of the pause (that of a real arm jumps to the arm's position). The height
-///   is measured while the arm still presses. So the height is too low by the distance by which the contact yields.
+/// - paper: the set-point of a simulated arm stays until the end of the pause; that of a real arm jumps to the arm's
+///   position. The height is measured while the arm still presses. So the height is too low by the distance by which
+///   the contact yields.
 /// - two_stage: the set-point jumps to the arm's position. The arm backs off until the tip is free, waits and tares. A
 ///   slow descent with a lower threshold follows; its contact is the result. If there is no second contact within twice
 ///   the distance of the retreat, the first contact was false, and the descent continues.
@@ -53,11 +54,11 @@ class GuardedTap {
   /// Period of the control loop in s: Baxter's joint states arrive at 100 Hz.
   static constexpr double kPeriod = 0.01;
 
-  /// Kind of arm. The simulated arm with `paper` keeps its set-point at a contact and presses further, as in the paper.
-  /// A real arm stops by itself at 16 N, and the zero of its force drifts. At each contact of a real arm, the set-point
-  /// jumps to the arm's position. Every pause of `paper` repeats the tare, unless a contact may begin. Because of
-  /// friction, the force of a resting real arm depends on the direction of its last motion, so every tare follows a
-  /// descent.
+  /// Kind of arm. The simulated arm with `paper` keeps its set-point at a contact and presses further, as in Sun and
+  /// Min 2021. A real arm stops by itself at 16 N, and the zero of its force drifts. At each contact of a real arm, the
+  /// set-point jumps to the arm's position. Every pause of `paper` repeats the tare, unless a contact may begin.
+  /// Because of friction, the force of a resting real arm depends on the direction of its last motion, so every tare
+  /// follows a descent.
   enum class ArmKind { simulated, real };
 
   /// Descent in metres after which the friction of a resting arm equals the friction of a descending arm: joints
@@ -78,8 +79,8 @@ class GuardedTap {
   /// The tap ends after this number of contacts within kFarthestOnset whose force lasts but rises by less than
   /// kSoftestRise. The object is then too soft.
   static constexpr int kMostSoft = 2;
-  /// If two contacts whose force does not last are nearer than this distance (metres), they count as one contact with a
-  /// soft object.
+  /// If two contacts whose force does not last differ by less than this height (metres), they count as one contact with
+  /// a soft object.
   static constexpr double kSamePlace = 0.002;
 
   GuardedTap(const MotionOptions& motion, const Descent& descent, ArmKind arm = ArmKind::simulated);
@@ -96,7 +97,7 @@ class GuardedTap {
   void give_up(double height);
 
   bool done() const { return stage_ == Stage::done; }
-  /// Returns whether the next force belongs to a tare: the first one, or the second one of two_stage.
+  /// Returns whether the next force belongs to a tare: the first tare, or the second tare of two_stage.
   bool taring() const { return stage_ == Stage::tare || stage_ == Stage::settle; }
   /// Returns whether a contact was detected and the arm is stopping.
   bool stopping() const { return stage_ == Stage::stop; }

@@ -22,7 +22,8 @@ struct HeightResult {
   std::optional<double> peak_force = std::nullopt;  ///< newtons
 };
 
-/// Returns the result of a tap along `line`, which must be vertical and from above.
+/// Returns the result of a tap along `line`. The x and y of a contact are those of the start of `line`, which is right
+/// for a line from above. For other lines, the caller sets x, y and the distance.
 inline TapResult result_on(const TapLine& line, HeightResult result) {
   TapResult out = result.outcome == Outcome::contact ? contact_on(line, result.height, result.force, result.seconds)
                                                      : tap_without_contact(result.outcome, result.seconds);

@@ -30,9 +30,9 @@ Vector3d normal3(Random& random) {
 
 double between(double low, double high, Random& random) { return low + (high - low) * random.uniform(); }
 
-/// Returns how much the free path of a tool, which came from far outside, contradicts a primitive. It is the smaller of
-/// two shifts, metres, after which the tool no longer meets the primitive too early: a shift of the surface backwards,
-/// or of the path sideways. 0 without a contradiction.
+/// Returns how much the free path of a tool, which came from far outside, contradicts a primitive. Either of two shifts
+/// removes the contradiction: the surface moves backwards, or the path moves sideways. Returns the smaller shift,
+/// metres; 0 without a contradiction.
 double depth_of(const Primitive& primitive, const SurfaceTouch& touch) {
   const Vector3d to = primitive.centre - touch.line.origin;
   if ((to - to.dot(touch.line.direction) * touch.line.direction).squaredNorm() > primitive.half.squaredNorm())
@@ -147,7 +147,7 @@ double AssemblySampler::prior_of(const Primitive& primitive) const {
     return -kNoHit;
   const Vector3d own = primitive.turn.transpose() * Vector3d::UnitZ();
   const double lowest = primitive.centre.z() - primitive.half.dot(own.cwiseAbs());
-  // Nothing reaches into the desk, and floating primitives need a support.
+  // Penalises primitives that reach into the desk, and primitives that float above it without a support.
   if (lowest < 0.0) out -= 0.5 * math::pow(lowest / 0.003, 2);
   if (lowest > 0.003) out -= 1.0;
   // Prefers the smaller of two primitives that explain the same touches.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Belief about whole objects: some assemblies of simple solids, about equally probable, moved by Markov chain Monte
-// Carlo after every touch. They predict where untried lines meet something. The GP of residual_gp.hpp corrects the
+// Carlo after every touch. They predict where untried lines meet an object. The GP of residual_gp.hpp corrects the
 // surface of the most probable one.
 #pragma once
 
@@ -23,7 +23,8 @@ struct AssemblySamplerSettings {
   double primitives = 5.0;  ///< log likelihood that an additional primitive has to gain, nats
   double smallest = 0.002;  ///< smallest half extent, metres
   double largest = 0.15;    ///< largest half extent, metres
-  double most = std::numeric_limits<double>::infinity();  ///< nats, largest cost of a touch, which may be an outlier
+  /// nats, largest loss of log likelihood by one touch, because a touch may be an outlier
+  double most = std::numeric_limits<double>::infinity();
 };
 
 /// Primitives, and the distances of all touches to each of them.
@@ -54,14 +55,14 @@ class AssemblySampler {
   /// Replaces all touches by their current readings, and sets `misfit` and `most`.
   void read_again(const std::vector<SurfaceTouch>& touches, double misfit, double most);
   /// Adds a camera view before all touches: many touches at once, then several rounds of moves. The rounds begin with a
-  /// flattened likelihood (a small power of it) and cool down, so that no mode survives only because it was found
-  /// first.
+  /// flattened likelihood, a small power of it. The power then rises to 1 (simulated annealing), so that no mode
+  /// survives only because it was found first.
   void look(const std::vector<SurfaceTouch>& view);
 
   const std::vector<Assembly>& assemblies() const { return all_; }
-  /// Draws an additional primitive, attached to `one`, this many times. Returns the draws that no touch contradicts:
-  /// possible undiscovered objects. The share of returned draws estimates which part of the prior probability of such
-  /// objects remains.
+  /// Draws `draws` additional primitives, each attached to a primitive of `one`. Returns those that no touch
+  /// contradicts: possible undiscovered objects. The share of returned draws estimates which part of the prior
+  /// probability of such objects remains.
   std::vector<Primitive> undiscovered(const Assembly& one, int draws, Random& random) const;
   /// Returns the most probable assembly.
   const Assembly& best() const;
@@ -94,7 +95,7 @@ class AssemblySampler {
   Random random_;
   std::vector<SurfaceTouch> touches_;
   std::size_t seen_ = 0;     ///< number of touches_ that come from a view
-  double last_power_ = 1.0;  ///< power of the likelihood at the end of a sweep of moves
+  double last_power_ = 1.0;  ///< power to which the likelihood is raised at the end of a sweep of moves
   double power_ = 1.0;       ///< current power
   std::vector<Assembly> all_;
   Assembly::Part scratch_;

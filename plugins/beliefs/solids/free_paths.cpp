@@ -38,7 +38,7 @@ std::vector<FreePathPoint> passages_of(const ResidualKernel& kernel, const Assem
     for (double along = 0.0; along < touches[way].length;) {
       const Vector3d at = touches[way].line.origin + along * touches[way].line.direction;
       const double distance = solids.distance(at);
-      if (!(distance >= -deepest)) {  // here the assembly is wrong and not the residual GP
+      if (!(distance >= -deepest)) {  // so deep inside, the assembly is wrong, which the residual GP cannot correct
         out.resize(first);
         break;
       }
@@ -49,7 +49,7 @@ std::vector<FreePathPoint> passages_of(const ResidualKernel& kernel, const Assem
   return out;
 }
 
-/// Returns the deepest point of each stretch of a path inside the surface. A point that was added before ends a
+/// Returns the deepest point of each stretch of a path inside the surface. A point that is already in the data ends a
 /// stretch.
 std::vector<FreePathPoint*> deepest(const std::vector<FreePathPoint*>& passages, double noise) {
   std::vector<FreePathPoint*> out;
@@ -75,7 +75,7 @@ void update_inside(const ResidualKernel& kernel, const ResidualData& known, cons
     some[i]->inside = means(static_cast<Eigen::Index>(i)) - some[i]->distance;
 }
 
-/// Updates all points and returns those inside the surface or near it.
+/// Updates all points and returns the points that are inside the surface or near it.
 std::vector<FreePathPoint*> find_close(const ResidualKernel& kernel, const ResidualData& known,
                                        const std::vector<FreePathPoint*>& all) {
   constexpr double kClose = 0.003;  // metres: held points elsewhere usually move the surface outwards by less
@@ -87,16 +87,16 @@ std::vector<FreePathPoint*> find_close(const ResidualKernel& kernel, const Resid
 }
 
 /// Fit of the residual GP to contacts and to the free points that hold the surface back. Let A = L * L' be the
-/// covariance of the contacts, noise included, and V = L^-1 * C, where C is the covariance between the contacts and the
-/// free points. Then S of NonnegativeSolver is the covariance of the free points given the contacts, with their noise.
-/// d is the depth of the free points inside the surface given the contacts.
+/// covariance of the contacts, noise included. C is the covariance between the contacts and the free points, and V =
+/// L^-1 * C. In NonnegativeSolver, S is then the covariance of the free points given the contacts, plus the noise of
+/// the free points. d is the depth of the free points inside the surface that the contacts alone determine.
 class ConstrainedFit {
  public:
   ConstrainedFit(const ResidualKernel& kernel, const ResidualData& contacts)
       : kernel_(kernel), contacts_(contacts), between_(contacts.weights.size(), 0) {}
 
-  /// Adds free points, all with the same noise, to `paths`. Replaces the free points of `known` by those that hold in
-  /// the new optimum.
+  /// Adds free points, all with the same noise, to `paths`. Replaces the free points of `known` by those that hold the
+  /// surface back in the new optimum.
   void add(const std::vector<ResidualKernel::ResidualDatum>& rows, FreePaths& paths, ResidualData& known) {
     const auto lower = contacts_.lower.triangularView<Eigen::Lower>();
     paths.points.insert(paths.points.end(), rows.begin(), rows.end());
@@ -133,10 +133,11 @@ class ConstrainedFit {
 
 }  // namespace
 
-/// The smaller of two bounds. The first one is certain: |g(x)| <= ||g|| * sqrt(k(x, x)) in the kernel's Hilbert space,
-/// with ||g||^2 = w' * K * w and (K + N) * w = targets. With many rows it is several times too large. The second one is
-/// empirical: between the data, g exceeds its values at the data by at most a fifth in some hundred fits of runs.
-/// kBetween allows a half. If the data contain slopes, kMaxResidual takes the place of the values.
+/// Returns the smaller of two bounds. The first bound is certain: |g(x)| <= ||g|| * sqrt(k(x, x)) in the kernel's
+/// Hilbert space, with ||g||^2 = w' * K * w and (K + N) * w = targets. K is the covariance of the data, N their noise
+/// variances and w their weights. With many rows, this bound is several times too large. The second bound is empirical.
+/// In several hundred fits, |g| between the data exceeded its largest value at the data by at most 20 %; kBetween
+/// allows 50 %. If the data contain slopes, kMaxResidual replaces the largest value.
 double ResidualData::reach(const ResidualKernel& kernel) const {
   constexpr double kBetween = 1.5;
   double square = 0.0;

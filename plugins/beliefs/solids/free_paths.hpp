@@ -19,7 +19,7 @@ inline constexpr double kMaxResidual = 0.012;
 struct ResidualData {
   std::vector<ResidualKernel::ResidualDatum> rows;
   ResidualKernel::DatumTable table;
-  /// Cholesky factor of the covariance of all data except those of free paths, noise included.
+  /// Cholesky factor of the covariance, noise included, of all data except the points of free paths.
   Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> lower;
   Eigen::VectorXd weights;
 
@@ -31,9 +31,9 @@ struct ResidualData {
 
 /// The free paths of a fit.
 struct FreePaths {
-  std::vector<ResidualKernel::ResidualDatum> points;  ///< points that were inside the surface at some time
-  /// Number of paths that are still inside the surface by more than their noise, apart from points that hold it back.
-  /// The fit then ended at its largest number of rounds.
+  std::vector<ResidualKernel::ResidualDatum> points;  ///< points that were inside the surface in any round of the fit
+  /// Number of paths that are still inside the surface by more than their noise, at points other than those that hold
+  /// it back. If the number is above 0, the fit ended at its largest number of rounds.
   int violated = 0;
   int redundant = 0;  ///< number of points that are left out, because the matrix would be singular with them
 };

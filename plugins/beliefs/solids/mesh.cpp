@@ -85,7 +85,8 @@ Box box_of(const Primitive& primitive, double margin) {
 /// Cuts the solid off at the desk.
 double above_desk(double value, const Vector3d& at) { return std::max(value, -at.z()); }
 
-/// An edge from a node to the next one, with one end inside, and the state of the search for its root.
+/// A grid edge from a node to the next one, with one end inside the surface, and the state of the search for the zero
+/// of f on it.
 struct Edge {
   Vector3d from;
   Eigen::Index axis;
@@ -156,7 +157,7 @@ struct Rings {
       for (std::size_t k = 0; k < 4; ++k) leaves += in(node(k)) && !in(node(k + 1)) ? 1 : 0;
       for (std::size_t k = 0; k < 4; ++k) {
         if (!in(node(k)) || in(node(k + 1))) continue;
-        // The ring goes around the outer nodes: if the inner nodes of a face are diagonal, they are connected.
+        // The ring goes around the outer nodes: two inner nodes at opposite corners of a face count as connected.
         std::size_t back = k + 1;
         while (!in(node(back + 1))) ++back;
         const std::size_t leave = edge_between(node(k), node(k + 1));
@@ -191,8 +192,8 @@ std::vector<double> distances_at(const Crossings& grid, const Assembly& solids, 
   return out;
 }
 
-/// Returns a grid, without crossings yet, around the part of the assembly above the desk and `margin` metres more;
-/// without nodes if there is no such part. Its cubes have side `side` or larger, metres.
+/// Returns a grid around the part of the assembly above the desk, enlarged by `margin` metres, without crossings. The
+/// grid has no nodes if there is no such part. Its cubes have side `side` or larger, metres.
 Crossings make_empty_grid(const Assembly& solids, double margin, double side) {
   constexpr double kMostNodes = 4e6;
   Crossings out;
@@ -233,8 +234,8 @@ std::vector<Edge> find_crossed_edges(const Crossings& grid, const std::vector<do
   return out;
 }
 
-/// Adds the triangles of a ring of vertices to `mesh`: around an additional vertex in its middle if the ring is
-/// `crowded` and has more than three vertices, else around its first vertex.
+/// Adds the triangles of a ring of vertices to `mesh`, all around one vertex. If the ring is `crowded` and has more
+/// than three vertices, this is an additional vertex in its middle, else its first vertex.
 void add_ring(const std::vector<int>& ring, bool crowded, Surface& mesh) {
   if (!crowded || ring.size() <= 3) {
     for (std::size_t i = 1; i + 1 < ring.size(); ++i) mesh.triangles.push_back({ring[0], ring[i], ring[i + 1]});
@@ -299,8 +300,8 @@ Surface close_mesh(const Crossings& crossings, double desk) {
   int count = 0;
   for (std::size_t edge = 0; edge < vertices.size(); ++edge)
     if (crossings.crosses(static_cast<int>(edge / 3), edge % 3)) vertices[edge] = count++;
-  // A cube has the number of its first node. The last node of a row has no cube; its number stands for eight nodes of
-  // the boundary, which are all outside.
+  // A cube has the number of its first node. The last node of a row begins no cube. The eight nodes that its number
+  // gives are all at the boundary, and so outside.
   for (int cube = 0; cube + corners[7] < static_cast<int>(crossings.inside.size()); ++cube) {
     unsigned inside = 0;
     for (unsigned i = 0; i < 8; ++i) {

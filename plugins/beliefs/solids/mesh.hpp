@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Closed mesh of the estimated surface: the zero level of f(x) = m(x) - g(x) of residual_gp.hpp, closed by the desk
-// where an object stands on it.
+// Closed mesh of the estimated surface: the zero level of f(x) = m(x) - g(x), closed by the desk where an object stands
+// on it. m is the distance to the assembly, and g the mean of the residual GP (residual_gp.hpp).
 //
 // A variant of marching cubes (Lorensen and Cline 1987) without its table. Each grid edge that the surface crosses has
 // one vertex at the crossing. In each cube, the vertices are joined face by face into rings. Two neighbouring cubes
@@ -42,10 +42,10 @@ struct Crossings {
 };
 
 /// Returns the crossings of the surface of `solids`, corrected by `residual_gp`, which was fitted to `solids`. Cubes
-/// have side `side`. If the grid needed more than four million cubes, the cubes are larger (see Crossings::side). Four
-/// million cubes of 2 mm fill a cube of 31 cm. Walls thinner than a cube may have holes; the mesh is closed around the
-/// holes. Normals are gradients of f; where f jumps, as at edges of primitives, the normals of the assembly replace
-/// them. SolidsBelief computes the standard deviations, from all assemblies.
+/// have side `side`. If the grid would need more than four million cubes, the cubes are larger (see Crossings::side).
+/// Four million cubes of 2 mm fill a cube of 31 cm. Walls thinner than a cube may have holes; the mesh is closed around
+/// the holes. Normals are gradients of f; where f jumps, as at edges of primitives, the normals of the assembly replace
+/// them. SolidsBelief computes the standard deviations of the vertices from all assemblies.
 Crossings cross_surface(const Assembly& solids, const ResidualGp& residual_gp, double side);
 
 /// Returns the closed mesh, with heights raised by `desk`, the desk's height in the scene, metres. A ring gets an

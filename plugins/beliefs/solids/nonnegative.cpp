@@ -98,7 +98,8 @@ void NonnegativeSolver::solve() {
     values_.conservativeResize(values.size() + 1);
     values_.tail(1).setZero();
     settle();
-    // The form must fall by more than rounding, because the same set in another order gives no improvement.
+    // The quadratic form must decrease by more than rounding errors. Otherwise the same set of unknowns, held in
+    // another order, could count as an improvement.
     constexpr double kMinRelativeDecrease = 1e-13;
     if (cost() < least - kMinRelativeDecrease * std::abs(least)) continue;
     hold_only(before);

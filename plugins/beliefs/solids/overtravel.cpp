@@ -9,8 +9,8 @@ namespace {
 
 // Prior standard deviations: offset in metres, compliance in metres per newton (in place of the drift), and noise in
 // metres along the path. A lag of 0.35 s at 2.4 cm/s is an offset of 8 mm. A stiffness of 1500 N/m is a compliance of
-// 0.7 mm/N. The noise is only that of a pose: the floor of a vessel, a few millimetres above the desk, must not be
-// mistaken for the desk.
+// 0.7 mm/N. The noise covers only the error of a pose. With a larger noise, the floor of a vessel, a few millimetres
+// above the desk, would be mistaken for the desk.
 constexpr OffsetPrior kPrior{0.006, 0.0005, 0.0012};
 // Smallest downward component of the direction. On flatter paths, an error of the desk's height is too large along the
 // path.
@@ -42,9 +42,9 @@ void Overtravel::add(const SurfaceTouch& told, double force) {
   const double height = lowest_point(told);
   const double steep = -told.line.direction.z();
   if (steep < kSteep || height > margin()) return;
-  // Each contact has a position of its own. Otherwise OffsetModel would leave out low contacts near higher ones,
-  // because they may be at a rim. That suits taps from above, but here it would leave out contacts with the desk near
-  // every wall.
+  // Each contact gets an artificial position, far from all others. Otherwise OffsetModel would leave out low contacts
+  // near higher ones, because they may be at a rim. That suits taps from above, but here it would leave out contacts
+  // with the desk near every wall.
   constexpr double kApart = 1.0;
   offset_model_.add({kApart * static_cast<double>(lows_.size()), 0.0}, force, height / steep);
   lows_.push_back({height, steep, force});

@@ -2,16 +2,16 @@
 // Estimates how far a tool travels past a surface before its contact is reported. It learns this from contacts with the
 // desk, whose height is known, and classifies which contacts are with the desk.
 //
-// The touched surface yields under the force, and an arm that lags behind its set-point or detects late goes further.
-// So a contact is reported too deep by a + b * F, where F is its force. OffsetModel (gp/offset_model.hpp) learns a and
-// b as its offset and drift, with force in the place of time. The estimate is at least 0, because a tool cannot stop
-// before the surface. If contacts with the desk are reported on the desk, nothing is changed.
+// The touched surface yields under the force, and an arm that lags behind its set-point or detects a contact late moves
+// further. So a contact is reported too deep by a + b * F, where F is its force. OffsetModel (gp/offset_model.hpp)
+// learns a and b as its offset and drift, with force in the place of time. The estimate is at least 0, because a tool
+// cannot stop before the surface. If contacts with the desk are reported on the desk, nothing is changed.
 //
-// The spread is the standard deviation from one contact to the next. Only contacts reported below the desk determine
-// it, because contacts above may be with low parts of an object.
+// The spread is the random part of the overtravel: the standard deviation from one contact to the next. Only contacts
+// reported below the desk determine it, because contacts above may be with low parts of an object.
 //
-// The model covers neither the additional yielding of an object compared with the desk nor sideways errors of the tool,
-// because contacts with the desk do not show them.
+// The model does not cover objects that yield more than the desk, nor sideways errors of the tool: contacts with the
+// desk do not show these.
 #pragma once
 
 #include "gp/offset_model.hpp"

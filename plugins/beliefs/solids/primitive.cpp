@@ -125,8 +125,9 @@ struct PlaneRotation {
 PlaneRotation turned_by(double angle) { return {math::cos(angle), math::sin(angle)}; }
 
 /// Returns aside() of a round primitive. The line is given in the primitive's frame: a point `from` and the unit
-/// direction `along`. Searches the direction with the least value: first among twelve, then between them. It uses sums
-/// of known angles, because this search dominates the run time of runs from any side.
+/// direction `along`. Searches for the direction with the smallest sideways shift: evaluates twelve directions, then
+/// refines the best one between its neighbours. It adds angles with known cosines, because this search dominates the
+/// run time of runs from any side.
 double search_aside(const Primitive& primitive, const Vector3d& from, const Vector3d& along, double most) {
   static const std::array<PlaneRotation, 12> directions = [] {
     std::array<PlaneRotation, 12> out;
@@ -153,7 +154,7 @@ double search_aside(const Primitive& primitive, const Vector3d& from, const Vect
     best = turned;
   };
   for (const PlaneRotation& direction : directions) attempt(direction);
-  // Between two of these directions, the value may be smaller. The difference is at most sin 15 degrees times the
+  // Between two of these directions, the shift may be smaller. The difference is at most sin 15 degrees times the
   // extent (for thin solids), plus (1 - cos 15 degrees) times the distance between line and centre.
   if (least - 0.3 * primitive.half.norm() > most) return most;
   for (const PlaneRotation& step : steps) {

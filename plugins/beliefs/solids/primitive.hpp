@@ -11,7 +11,7 @@
 
 namespace palpate {
 
-/// Value that stands for the distance to a solid if a line misses it; and 180 degrees in radians.
+/// kNoHit: distance along a line to a solid that it misses. kHalfTurn: 180 degrees in radians.
 inline constexpr double kNoHit = std::numeric_limits<double>::infinity();
 inline constexpr double kHalfTurn = 3.14159265358979323846;
 

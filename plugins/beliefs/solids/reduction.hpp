@@ -6,9 +6,10 @@
 //
 //     k(x, x') + (1 / K) * sum over assemblies j of d_j(x) * d_j(x')
 //
-// where k is the residual GP's prior, K is the number of assemblies, and d_j(x) is the same distance for the surface of
-// assembly j near x, clipped to 2 cm. So a touch informs about other positions as far as the residual GP is smooth, and
-// as far as the assemblies agree. With an additional contact at a position y, with the same noise, the variance is
+// where k is the residual GP's prior, and K is the number of assemblies. d_j(x) is the signed distance from the surface
+// of the most probable assembly to that of assembly j near x, clipped to 2 cm. So a touch also reduces the uncertainty
+// at other positions: at near ones because the residual GP is smooth, and at others where the assemblies deviate
+// together. With an additional contact at a position y, with the same noise, the variance is
 //
 //     Var(x | y) = Var(x) - Cov(x, y)^2 / (Var(y) + noise^2),
 //
@@ -26,9 +27,9 @@
 
 namespace palpate {
 
-/// Returns the reduction by a touch at each of the places, which must be near the surface of the most probable
-/// assembly. It is the decrease of the mean standard deviation over all places, metres, between 0 and this mean. The
-/// work grows with the square of the number of places. Adds jitter, a variance in square metres, and redundant rows to
+/// Returns for each place the reduction by a touch there. The reduction is the decrease of the mean standard deviation
+/// over all places, metres, between 0 and this mean. All places must be near the surface of the most probable assembly.
+/// The work grows with the square of their number. Adds jitter, a variance in square metres, and redundant rows to
 /// `report`. Never throws.
 Eigen::VectorXd expected_reductions(const AssemblySampler& solids, const ResidualGp& residual_gp,
                                     const ResidualGp::Places& places, FactorReport* report = nullptr);

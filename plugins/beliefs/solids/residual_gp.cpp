@@ -19,7 +19,7 @@ using Eigen::MatrixXd;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-/// Factorises the rows `which` of a covariance. Each diagonal entry gets its noise and a share `jitter` of itself.
+/// Factorises the rows `which` of a covariance. Adds its noise, and `jitter` times the entry, to each diagonal entry.
 /// Returns the factorised rows. Rows with which the matrix is not positive definite in double precision are left out.
 std::vector<int> factorise(Factor& factor, const MatrixXd& covariance, const std::vector<int>& which,
                            const VectorXd& noise, double jitter) {

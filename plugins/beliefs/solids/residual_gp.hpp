@@ -17,12 +17,12 @@
 //     free path          f >= 0: g <= m(x) at points of the path. A point that would violate this holds the surface
 //                        back like a contact; the other points have no effect.
 //
-// The mean is the most probable g if a free point at the depth d inside the surface costs d^2 / (2 * noise^2), like a
-// contact with the error d, and a free point outside costs nothing. This is the optimum of a strictly convex problem,
-// and it is found exactly. From each stretch of a path inside the surface, the deepest point is added. This is repeated
-// until no path is inside by more than its noise, except at points that were added. The variance is that of a GP with
-// contacts and normals alone. A free path would reduce the variance by less than a contact at the same position, and
-// not at all where it does not hold the surface back.
+// The mean is the most probable g under these costs of a free point (a point of a free path): d^2 / (2 * noise^2) at
+// the depth d inside the surface, like a contact with the error d; 0 outside. This is the optimum of a strictly convex
+// problem, and it is found exactly. In each round, the deepest point of each stretch of a path inside the surface is
+// added to the data. The rounds end when no path is inside by more than its noise, except at added points. The variance
+// is that of a GP with contacts and normals alone. A free path would reduce the variance by less than a contact at the
+// same position, and not at all where it does not hold the surface back.
 #pragma once
 
 #include "regular/regular_factor.hpp"
@@ -66,8 +66,8 @@ class ResidualGp {
 
   /// Returns the mean of g: the distance by which the surface lies outside the assembly's surface near `place`, metres.
   double mean(const Place& place) const;
-  /// Return the RMS distance of the contacts from the assembly, within limits, and the prior standard deviation of g:
-  /// this distance times the kernel's standard deviation. Metres.
+  /// signal(): Returns the RMS distance of the contacts from the assembly, within limits, metres. deviation(): Returns
+  /// the prior standard deviation of g, metres: signal() times the kernel's standard deviation.
   double signal() const { return kernel_.signal(); }
   double deviation() const { return kernel_.deviation(); }
   /// Returns the largest distance between the surface and the assembly's surface, metres: mean() is between -reach()

@@ -21,8 +21,8 @@ namespace palpate {
 namespace {
 
 /// Largest cost of a touch in nats, once contacts have shown errors. It is less than the cost of a floating primitive,
-/// so one contact in the air creates no primitive. Two outliers per hundred touches, anywhere on the path, cost about
-/// as much.
+/// so one contact in the air creates no primitive. A model with two outliers per hundred touches, anywhere on the path,
+/// would have about the same largest cost.
 constexpr double kMostCost = 6.5;
 
 constexpr std::int64_t kLines = 2000;  // drawn before each tap

@@ -23,12 +23,12 @@ namespace palpate {
 
 /// Quantities of a line, for the most probable particle:
 /// - expected_discovery, metres: expected change of the surface by objects that a tap along the line discovers. The
-///   prior is assumed to expect one primitive more than the particle contains. The value is the probability that such a
-///   primitive exists, that no touch so far contradicts it, and that the line meets it before the estimated surface,
-///   times the change. The change is the mean, over lines from all sides, of how much earlier they meet the surface, at
-///   most 3 cm per line.
-/// - std_reduction, metres: expected decrease of the standard deviation of the estimated surface by a tap, as the mean
-///   over the whole surface; 0 for lines that meet no object, or meet it at less than 30 degrees to its surface.
+///   prior is assumed to expect one primitive more than the particle contains. Such a primitive counts if no touch so
+///   far contradicts it and the line meets it before the estimated surface. The value is the probability of such a
+///   primitive times the change by it. The change is the mean distance by which lines from all sides meet the surface
+///   earlier, at most 3 cm per line.
+/// - std_reduction, metres: expected decrease by a tap of the mean standard deviation over the whole estimated surface.
+///   The value is 0 for lines that meet no object, or meet it at less than 30 degrees to its surface.
 /// - surface_std, metres: standard deviation of the surface along its normal where the line meets it; else 0.
 class SolidsBelief final : public Belief {
  public:

@@ -27,7 +27,8 @@ class TouchLog {
   void look(std::vector<SurfaceTouch> seen, bool shows_object);
 
   /// Returns the current reading of a result. Returns nullopt if the result contains no information: for a failed tap,
-  /// and for a tap far below the desk without a contact, because it would have missed an object, too.
+  /// and for a tap without a contact that ends far below the desk. Such a tap did not feel the desk, so it may not have
+  /// felt an object either.
   std::optional<TapReading> read(const TapRequest& request, const TapResult& result) const;
 
   /// Adds the result of a tap, and reads all contacts again.

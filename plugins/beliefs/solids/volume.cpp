@@ -77,7 +77,8 @@ class PrimitiveSearch {
       const double distance = primitive.distance(at);
       const double to_ball = (at - primitive.centre).norm() - balls_[i];
       const double clear = std::max(shares_[i] * std::abs(distance), to_ball);
-      if (distance < 0.0) {  // a point inside a primitive has to leave that primitive
+      // from inside several primitives, the surface is outside all of them: the largest bound counts
+      if (distance < 0.0) {
         known.clear = known.distance < 0.0 ? std::max(known.clear, clear) : clear;
       } else if (known.distance >= 0.0) {
         known.clear = std::min(known.clear, clear);
@@ -92,8 +93,9 @@ class PrimitiveSearch {
   std::vector<double> shares_, balls_;  ///< see certain_share(); radii of balls around the primitives, metres
 };
 
-/// Mean of the residual GP, which changes slowly. It is evaluated once per few cubes, for each primitive and each of
-/// six directions of the normal: neighbouring primitives may have parallel surfaces with different means.
+/// Mean of the residual GP, which changes slowly. It is evaluated once per block of kCubes^3 cubes, separately for each
+/// primitive and each of six directions of the normal. Neighbouring primitives may have parallel surfaces with
+/// different means.
 class ResidualMeanCache {
  public:
   ResidualMeanCache(const ResidualGp& residual_gp, double side) : residual_gp_(residual_gp), side_(kCubes * side) {}

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Common volume of two solids: a grid of cubes over a region, represented by their centres.
+// A grid of cubes over a region, to compute the common volume of two solids. The centre of a cube decides whether the
+// cube belongs to a solid.
 #pragma once
 
 #include "solids/assembly_sampler.hpp"

@@ -46,7 +46,7 @@ struct AscentResult {
   bool valid = false;      ///< whether value and gradient were always finite
   bool converged = false;  ///< whether the gradient also vanished
   std::string reason;      ///< reason why the ascent ended
-  Eigen::MatrixXd metric;  ///< metric that this ascent used
+  Eigen::MatrixXd metric;  ///< matrix of the coordinates u of this ascent: x = start + metric * u
 };
 
 /// Data that a fit stores for the next one (FitProblem::memory): number of taps at the last search, and metric.
@@ -65,7 +65,7 @@ struct Memory {
   }
 };
 
-/// The negative objective as a function for Ceres, in the coordinates of a metric.
+/// The negative objective as a function for Ceres, in coordinates u with x = start + metric * u.
 class NegativeObjective final : public ceres::FirstOrderFunction {
  public:
   NegativeObjective(Objective& objective, const Eigen::VectorXd& start, const Eigen::MatrixXd& metric)
@@ -122,7 +122,7 @@ AscentResult ascend(Objective& objective, const Eigen::VectorXd& start, const Ei
           metric};
 }
 
-/// Returns a metric from the curvature at `result`, which is computed by differences of gradients.
+/// Returns the metric (see ascend()) from the curvature at `result`. Differences of gradients give the curvature.
 Eigen::MatrixXd metric_at(Objective& objective, const Eigen::VectorXd& result) {
   // Step in the logarithms. It is large compared with rounding errors and small compared with changes of the curvature.
   constexpr double kStep = 1e-3;

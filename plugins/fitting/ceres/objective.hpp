@@ -62,15 +62,15 @@ struct HyperPrior {
   double most = 0.0;
 };
 
-/// The chosen measure per point and output. If requested, the log density of the priors is added.
+/// Objective of a fit: the chosen measure per point and output. If requested, the log density of the priors is added.
 ///
 /// Log marginal likelihood: Rasmussen and Williams 2006, equations 2.30 and 5.9. Leave-one-out log predictive density:
 /// equations 5.10 to 5.13. Each derivative is the sum over all entries of dF/dK times dK. One inverse is therefore
 /// enough for all derivatives.
 class Objective {
  public:
-  /// `expectations` has one prior per hyperparameter. If `priors` is false, only their limits are used. The first and
-  /// third argument must outlive the object.
+  /// `expectations` has one prior per hyperparameter. If `priors` is false, only their limits are used. `model` and
+  /// `expectations` must outlive the object.
   Objective(const FitModel& model, Measure measure, const std::vector<HyperPrior>& expectations, bool priors);
 
   int size() const { return static_cast<int>(expectations_.size()); }
@@ -119,8 +119,8 @@ class Objective {
   /// standard_.
   Eigen::MatrixXd solved_;
   Eigen::VectorXd squares_;  ///< m values: standard^T * K^-1 * standard
-  /// Like solved_, for 1 / sqrt(1 / mean_ratio^2 + 1^T * K^-1 * 1), where 1 is a vector of ones; only with an unknown
-  /// mean.
+  /// Like solved_, but for the vector of ones, 1, divided by sqrt(1 / mean_ratio^2 + 1^T * K^-1 * 1). Computed only
+  /// with an unknown mean.
   Eigen::VectorXd ones_;
   double log_determinant_ = 0.0;
   double noise_ = 0.0;  ///< squared noise ratio

@@ -18,8 +18,8 @@ using namespace math::HWY_NAMESPACE;  // NOLINT(google-build-using-namespace)
 /// Number of strips in a panel. Eight columns of kPanel strips fit into the first-level cache.
 constexpr Index kPanel = 8;
 
-// Number of vector registers for rows, and number of columns, whose products are summed in one loop. The kPacks *
-// kColumns sums fill the vector registers of the processor.
+// One loop sums the products of kPacks vector registers of rows with kColumns columns. The kPacks * kColumns sums fill
+// the vector registers of the processor.
 #if HWY_TARGET == HWY_AVX3
 constexpr Index kPacks = 3;
 constexpr Index kColumns = 8;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Gaussian process classification with a probit likelihood by Laplace's approximation (Rasmussen and Williams 2006,
-// sections 3.4 and 3.9). The model is a latent function f ~ GP(mean, signal^2 * k) with p(on | x) = Phi(f(x)).
+// sections 3.4 and 3.9). The model is a latent function f ~ GP(mean, signal^2 * k) with the probability Phi(f(x)) that
+// x is on an object.
 #pragma once
 
 #include "regular/regular_factor.hpp"
@@ -48,20 +49,23 @@ struct LaplaceSettings {
   double mean = 0.0;    ///< prior mean of f
 };
 
-/// Posterior given n labels. Damped Newton steps find the mode, which is unique because the log posterior is concave.
-/// Contradictory labels at one position cause no numerical problems, because only I + W^1/2 * K * W^1/2 is factorised.
+/// Posterior of f given n labels. Damped Newton steps find the mode, which is unique because the log posterior is
+/// concave. Contradictory labels at one position cause no numerical problems, because only I + W^1/2 * K * W^1/2 is
+/// factorised.
 class Laplace {
  public:
   /// `kernel` must outlive the object. `points` is n x 2, `on` has n entries.
   Laplace(const Kernel& kernel, const LaplaceSettings& settings, const PointsView& points, const std::vector<bool>& on);
 
-  /// Computes p(on) at each position: Phi(mean / sqrt(1 + variance)) with mean and variance of f there.
+  /// Sets `out` to the probability of an object at each position: Phi(mean / sqrt(1 + variance)), with the posterior
+  /// mean and variance of f at the position.
   void probability(const PointsView& places, VectorOut out) const;
 
   /// Returns the approximate log p(labels), natural logarithm.
   double log_evidence() const { return log_evidence_; }
-  /// Returns the corrections of rounding errors in the factorisation at the mode, without unit. Only a kernel that is
-  /// not positive definite needs corrections, because all eigenvalues of the factorised matrix are at least 1.
+  /// Returns how the factorisation at the mode was corrected against rounding errors; its numbers have no unit. Only a
+  /// kernel that is not positive definite needs corrections, because all eigenvalues of the factorised matrix are at
+  /// least 1.
   const FactorReport& report() const { return factor_.report(); }
 
  private:

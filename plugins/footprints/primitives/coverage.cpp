@@ -13,9 +13,9 @@
 #define PALPATE_ROW_CUT
 namespace palpate::footprints {
 
-/// Intersection of a form with the rows of a grid, in units of columns and rows. In each row it is the intersection of
-/// one or two intervals with middle `x + slope * dy` and half width `half`. For an ellipse the half width is multiplied
-/// by sqrt(1 - (dy / reach)^2).
+/// Intersection of a form with the rows of a grid, in units of columns and rows. In each row, the form covers the
+/// intersection of one or two intervals. An interval has the middle `x + slope * dy` and the half width `half`; dy is
+/// the difference between the row and `y`. For an ellipse the half width is multiplied by sqrt(1 - (dy / reach)^2).
 struct RowCut {
   bool box = true;
   double x = 0.0, y = 0.0;  ///< centre
@@ -79,7 +79,7 @@ HWY_INLINE Singles depth(const FloatForm& form, Singles x, Singles y) {
   return hn::IfThenElse(hn::Gt(slope, hn::Zero(kSingles)), hn::Min(to_rim, to_circle), all(b));
 }
 
-/// See LabelModel::step(), for the depths of `count` positions in a primitive.
+/// Computes LabelModel::step() for the depths of `count` positions in a primitive.
 void steps(const Primitive& primitive, float per_metre, const float* x, const float* y, int count,
            LabelModel::Step* out) {
   const hn::RebindToSigned<decltype(kSingles)> numbers;
@@ -98,8 +98,8 @@ void steps(const Primitive& primitive, float per_metre, const float* x, const fl
   }
 }
 
-/// Computes the columns of a cut in `count` rows, starting at row `first`: first column, and first column after the
-/// cut. `columns` is the number of columns.
+/// Computes the columns that a cut covers in `count` rows, starting at row `first`. `begins` gets the first covered
+/// column of each row, `ends` the first column after the cut. The grid has `columns` columns.
 void cut_rows(const RowCut& cut, int first, int count, int columns, std::int32_t* begins, std::int32_t* ends) {
   const hn::Rebind<std::int32_t, decltype(kDoubles)> numbers;
   const auto all = [](double value) { return hn::Set(kDoubles, value); };
@@ -195,7 +195,7 @@ RowCut cut_of(const Form& form, double x0, double step_x, double y0, double step
     set(0, form.cosine * form.sine * (form.a * form.a - form.b * form.b) / (reach * reach), form.a * form.b / reach);
     return out;
   }
-  // Sides parallel to x limit only the rows.
+  // Sides parallel to x limit only the range of rows, not the columns within a row.
   const auto sides = [&](int interval, double along, double across, double side) {
     const bool along_x = std::abs(along) < 1e-12;
     set(interval, along_x ? 0.0 : -across / along,

@@ -14,15 +14,15 @@
 
 namespace palpate::footprints {
 
-/// Positions and labels of all taps. Rows with one entry per tap have length() entries, a multiple of kRound. Entries
-/// after the last tap are padding, outside every primitive.
+/// Positions and labels of all taps. Arrays with one entry per tap are padded to length() entries, a multiple of
+/// kRound. The padding acts like desk taps outside every primitive.
 class Taps {
  public:
   static constexpr int kRound = 16;
   using Step = LabelModel::Step;
 
   void add(const Touch& touch);
-  /// Sets these taps to the positions of `made` after a push.
+  /// Copies the taps `made`, moved to their positions after the push.
   void set_after_push(const Taps& made, const Push& push);
 
   int size() const { return size_; }
@@ -34,7 +34,7 @@ class Taps {
   /// Returns the number of taps with the label of an object.
   int objects() const { return objects_; }
 
-  /// Sets `row` (length() entries) to the depth of each tap in a primitive, in steps.
+  /// Sets `row` (length() entries) to the depth of each tap in a primitive, as a LabelModel::Step.
   void steps(const Primitive& primitive, const LabelModel& labels, Step* row) const;
 
  private:
@@ -44,10 +44,11 @@ class Taps {
   std::vector<Step> labels_;
 };
 
-/// Pointers to rows of steps, in the order of the primitives of a hypothesis.
+/// Pointers to the rows of a hypothesis, in the order of its primitives. A row holds the depth of each tap in one
+/// primitive, as a LabelModel::Step.
 using RowList = ShortList<const LabelModel::Step*>;
 
-/// One row of steps per primitive of a hypothesis. Particles store no other data about taps.
+/// Storage of the rows of a hypothesis, one row per primitive. Particles store no other data about taps.
 class TapRows {
  public:
   using Step = LabelModel::Step;
@@ -55,7 +56,8 @@ class TapRows {
   int length() const { return length_; }
   /// Lengthens all rows; new entries are kOutside.
   void grow(int length);
-  /// Copies rows. A row of this object may only stay or move to a lower index.
+  /// Replaces all rows by copies of `rows`. Rows of this object may be among them, but only at their present index or a
+  /// lower one.
   void set(const RowList& rows);
   Step* row(int primitive) { return steps_.data() + static_cast<std::ptrdiff_t>(primitive) * length_; }
   const Step* row(int primitive) const { return steps_.data() + static_cast<std::ptrdiff_t>(primitive) * length_; }
@@ -67,8 +69,9 @@ class TapRows {
 
 /// Sets `out` to the largest step of each tap over all rows: the step in the union of the primitives.
 void find_deepest(const RowList& rows, int length, LabelModel::Step* out);
-/// Return whether a row has an object tap inside, whether two rows share an object tap, and whether they contain
-/// different object taps.
+/// holds_object(): Returns whether an object tap is inside the primitive of `row`. share_object(): Returns whether one
+/// object tap is inside both primitives. hold_different_objects(): Returns whether some object tap is inside exactly
+/// one of both primitives.
 bool holds_object(const LabelModel::Step* row, const Taps& taps);
 bool share_object(const LabelModel::Step* one, const LabelModel::Step* other, const Taps& taps);
 bool hold_different_objects(const LabelModel::Step* one, const LabelModel::Step* other, const Taps& taps);
@@ -86,8 +89,8 @@ class CoverageGrid {
     int begin, end;
   };
   using Spans = std::vector<Span>;
-  /// Appends the positions that a primitive covers, in order. Rows of equally spaced positions are fast; other
-  /// positions are tested one by one.
+  /// Appends the positions that a primitive covers, in order. The function is fast if the positions are a regular grid,
+  /// row by row; otherwise it tests each position.
   void add_spans(const Primitive& primitive, Spans& out) const;
   /// Appends the positions that at least one of the primitives covers.
   void add_spans(const ShortList<Primitive>& primitives, Spans& out) const;
@@ -101,7 +104,7 @@ class CoverageGrid {
     double first, step;
     int count;
   };
-  /// Returns whether the positions are the product of both axes, row by row.
+  /// Returns whether the positions are the regular grid that x_ and y_ describe, row by row.
   bool has_equal_steps() const;
 
   Points positions_;

@@ -10,14 +10,15 @@ namespace {
 constexpr double kLeastShare = 0.1;
 constexpr double kMostShare = 0.9;
 
-/// Half axes of nearly round ellipses. The short half axis is at least `shortest`; `range` is the length of the range
-/// of its logarithm.
+/// Half axes of nearly round ellipses. The short half axis is at least `shortest`; `range` is the logarithm of the
+/// longest half axis divided by `shortest`.
 class NearlyRoundEllipses {
  public:
   NearlyRoundEllipses(double shortest, double range)
       : shortest_(shortest), range_(range), most_(std::min(kMostLog, 0.5 * range)) {}
 
-  /// `apart` and `size` are in [0, 1]; uniform values give uniform logarithms.
+  /// `apart` (for the ratio of the axes) and `size` (for the short axis) are in [0, 1]. If they are uniform, so are the
+  /// logarithms of the ratio and of the short axis.
   void set(Form& form, double apart, double size) const {
     const double by = most_ * apart;
     form.b = shortest_ * math::exp((range_ - by) * size);
@@ -103,8 +104,8 @@ void Primitive::fit_hole() {
     hole.b *= along;
     return;
   }
-  // The hole is centred on the corner and extends beyond the form. So nothing of the form remains outside the hole,
-  // even for noisy taps.
+  // The hole is centred on the corner and extends beyond the form. If it ended at the form's sides, positions there
+  // would count as near the primitive, and noise would make them ambiguous.
   const double u = side_a * form.a;
   const double v = side_b * form.b;
   hole.x += form.cosine * u - form.sine * v;

@@ -41,14 +41,16 @@ struct Form {
   /// Return the extent of the form from its centre along x and along y, metres.
   double reach_x() const { return reach(cosine * a, sine * b); }
   double reach_y() const { return reach(sine * a, cosine * b); }
-  /// Returns the extent in a direction in which the half axes have these components.
+  /// Returns the extent from the centre in a direction, metres. `along` and `across` are the components of the half
+  /// axes `a` and `b` in this direction.
   double reach(double along, double across) const {
     return family == Family::box ? std::abs(along) + std::abs(across) : std::sqrt(along * along + across * across);
   }
   /// Returns the area in square metres.
   double extent() const { return (family == Family::box ? 4.0 : kPi) * a * b; }
 
-  /// Rotates the form about its centre, in radians from x to y, or by an angle with this cosine and sine.
+  /// turn(): Rotates the form about its centre by `angle` (radians, positive from x towards y). turn_by(): Does the
+  /// same, given the cosine and sine of the angle.
   void turn(double angle) { turn_by(math::cos(angle), math::sin(angle)); }
   void turn_by(double c, double s) { std::tie(cosine, sine) = std::pair(cosine * c - sine * s, sine * c + cosine * s); }
   /// Swaps the axes if `b` is longer; the covered region is unchanged.
@@ -70,8 +72,8 @@ struct Primitive {
   Form hole;  ///< valid if `hollow`
   bool hollow = false;
   HolePlacement fit = HolePlacement::free;
-  // Parameters of a fitted hole: fractions of the form's axes (only `along` if concentric), and the signs of its
-  // corner.
+  // Parameters of a fitted hole. `along` and `across` are its size as fractions of the form's axes (only `along` if
+  // concentric). `side_a` and `side_b`, +1 or -1, select the corner of the form.
   double along = 0.0, across = 0.0;
   int side_a = 1, side_b = 1;
   double density = 0.0;  ///< cached Prior::density() of the primitive
@@ -82,8 +84,8 @@ struct Primitive {
     const double in_form = form.depth(x, y);
     return hollow ? std::min(in_form, -hole.depth(x, y)) : in_form;
   }
-  /// Returns true for all positions within `margin` of the primitive, metres, and for some others. The default is the
-  /// distance within which a tap is informative about the primitive.
+  /// Returns true for all positions within `margin` metres of the primitive, and for some positions farther away. The
+  /// default is the distance within which a tap is informative about the primitive.
   bool near(const Target& place, double margin = 0.03) const {
     const double dx = place.x - form.x;
     const double dy = place.y - form.y;
@@ -140,15 +142,16 @@ struct Push {
   explicit operator bool() const { return before > 0; }
   double angle() const { return math::atan2(sine, cosine); }
 
-  /// Return the position of an object's point after the push, and before it.
+  /// to_current(): Returns where a point of an object is after the push. to_original(): Returns where it was before.
   Target to_current(const Target& original) const;
   Target to_original(const Target& current) const;
-  /// Return the primitive after the push, and before it.
+  /// to_current(): Returns the primitive after the push. to_original(): Returns the primitive before it.
   Primitive to_current(Primitive original) const;
   Primitive to_original(Primitive current) const;
 };
 
-/// Primitives in any order, which may overlap. The objects cover the union of the primitives after the push.
+/// A set of primitives, in any order, which may overlap. `primitives` are at their positions after the push. The
+/// objects cover their union.
 struct Hypothesis {
   ShortList<Primitive> primitives;
   Push push;
@@ -161,11 +164,12 @@ struct Hypothesis {
 
 /// Prior of hypotheses: a Poisson process of `expected` primitives, truncated at `most`. Each primitive is inside the
 /// area, at a uniform position. Angle and logarithms of the half axes are uniform within the bounds. `most_slender`
-/// limits forms, not free holes. Priors of push and noise are in sampler.hpp.
-/// Most ellipses are nearly round: the logarithm of the short half axis is uniform, and the long half axis is up to 6 %
-/// longer. Only primitives that are at least twice as long as `min_width` have holes. A free hole has its centre on the
-/// primitive, and half axes from half of `min_width` to the long half axis of the primitive. A fitted hole takes a
-/// tenth to nine tenths of the axes, in the middle or, with equal probability for a box, at a corner.
+/// limits the axes of forms, but not of free holes. Priors of push and noise are in sampler.hpp. Most ellipses are
+/// nearly round: the logarithm of the short half axis is uniform, and the long half axis is up to 6 % longer. Only
+/// primitives that are at least twice as long as `min_width` have holes. A free hole has its centre on the primitive,
+/// and half axes from half of `min_width` to the long half axis of the primitive. The axes of a fitted hole are 0.1 to
+/// 0.9 of the form's axes. In an ellipse, a fitted hole is concentric; in a box, it is concentric or at a corner, with
+/// equal probability.
 class Prior {
  public:
   struct Settings {
@@ -199,8 +203,8 @@ class Prior {
     return form.a >= settings_.min_width ? 1.0 - settings_.hole_probability : 1.0;
   }
   /// Returns the density of a primitive with respect to its centre, its angle, the logarithms of all half axes, and the
-  /// fractions of a fitted hole. The density has a factor that is the same for all primitives. It is 0 if the primitive
-  /// is impossible.
+  /// fractions of a fitted hole. The density is computed up to a factor that is the same for all primitives. It is 0 if
+  /// the primitive is impossible.
   double density(const Primitive& primitive) const;
   /// Returns the density of a form's centre per square metre; 0 if the form does not fit there.
   double centre_density(const Form& form) const;
@@ -209,8 +213,8 @@ class Prior {
   /// Draws family, half axes up to `longest`, and direction; the centre is the origin.
   Form draw_form(double longest, Random& random) const;
   double family(const Form& form) const;
-  /// Returns the joint density of the ordered logarithms of the half axes, over a range of this length, and of the
-  /// direction.
+  /// Returns the joint density of the direction and of the logarithms of both half axes (a >= b). `range` is the length
+  /// of the interval of these logarithms.
   double axes(const Form& form, double range) const;
   double fitted_hole(const Primitive& primitive) const;
   double hole_centre_density(const Form& form, const Form& hole) const;

@@ -15,15 +15,15 @@ constexpr double kTurn = 0.6;      // tangent of half of the angle
 constexpr double kStretch = 0.3;   // see stretched()
 constexpr double kHoleStep = 0.2;  // fraction of a form's axes, for a fitted hole
 
-// Relative frequency of changes to a primitive near the latest tap.
+// Relative frequency of changes to a primitive near the latest tap, compared with other primitives.
 constexpr double kNearWeight = 30.0;
 
 // Standard deviations of a push along x and y, metres, and of its rotation, radians.
 constexpr double kPushShift = 0.012;
 constexpr double kPushTurn = 0.1;
 
-/// Steps of one move, symmetric about 0, from one draw of 64 bits. Their random scale is between 1/20 and 1 with
-/// uniform logarithms, because posteriors may be wide or narrow.
+/// Step sizes of one move, symmetric about 0, from one draw of 64 bits. Both have the same random scale, because
+/// posteriors may be wide or narrow. The scale is between 1/20 and 1, with a uniform logarithm.
 struct Steps {
   explicit Steps(Random& random) {
     constexpr int kScales = 16;
@@ -48,7 +48,7 @@ struct Steps {
   bool coin, other_coin;
 };
 
-/// Random choice of a primitive, weighted towards those near the latest tap.
+/// Random choice of a primitive. Primitives near the latest tap have a larger probability.
 class PrimitiveChoice {
  public:
   PrimitiveChoice(const ShortList<Primitive>& primitives, const Target& latest, Random& random) : latest_(latest) {
@@ -63,8 +63,8 @@ class PrimitiveChoice {
   }
 
   int index() const { return index_; }
-  /// Returns the probability of this choice after the chosen primitive becomes `changed`, divided by its present
-  /// probability.
+  /// Returns p' / p: p is the present probability of choosing this primitive, and p' the probability of choosing it
+  /// after `changed` has replaced it.
   double ratio(const Primitive& changed) const {
     if (!(sum_ > 0.0)) return 1.0;
     const double after = weight(changed);
@@ -84,15 +84,16 @@ int random_index(const ShortList<Primitive>& primitives, Random& random) {
   return static_cast<int>(random.index(static_cast<std::size_t>(primitives.size())));
 }
 
-/// Returns the density of a new primitive's centre per square metre, if a random object tap is at a uniform position in
-/// the form.
+/// Returns the density per square metre with which draw_about_taps() draws the centre of `form`. It places the form so
+/// that a random object tap is at a uniform position in the form.
 double density_about_taps(const Form& form, const Taps& taps) {
   int inside = 0;
   for (int i = 0; i < taps.size(); ++i) inside += taps.on(i) && form.contains(taps[i].x, taps[i].y) ? 1 : 0;
   return inside / (taps.objects() * form.extent());
 }
 
-/// Returns the prior density of a new primitive without a hole, divided by its density in draw_about_taps().
+/// Returns the prior density of a new primitive without a hole, divided by the density with which draw_about_taps()
+/// draws it.
 double ratio_about_taps(const Form& form, const Prior& prior, const Taps& taps) {
   const double drawn = density_about_taps(form, taps);
   return drawn > 0.0 ? prior.whole_probability(form) * prior.centre_density(form) / drawn : 0.0;
@@ -161,8 +162,8 @@ void change_hole(Proposal& out, const Hypothesis& from, bool adds, const Prior& 
   out.ratio = adds ? odds : 1.0 / odds;
 }
 
-// Rotation by 2 * atan(tangent), and the factor of a stretch. The reverse move has the negative `tangent` or `step`,
-// with the same probability.
+// turn(): Rotates a form by 2 * atan(tangent). stretched(): Returns the factor of a stretch. The negative `tangent` or
+// `step` is the reverse move, which has the same probability.
 void turn(Form& form, double tangent) {
   const double square = tangent * tangent;
   form.turn_by((1.0 - square) / (1.0 + square), 2.0 * tangent / (1.0 + square));
@@ -176,8 +177,8 @@ void stretch(Form& form, const Steps& steps) {
   form.b *= form.family == Form::Family::ellipse && steps.coin ? one : stretched(kStretch * steps.other);
 }
 
-/// Moves one side; the opposite side stays. Returns the ratio of proposal densities, because a symmetric step of a half
-/// axis is asymmetric in its logarithm.
+/// Moves one side; the opposite side stays. Returns the density of the reverse proposal divided by that of this
+/// proposal. The ratio is not 1, because a symmetric step of a half axis is asymmetric in its logarithm.
 double move_side(Form& form, const Steps& steps) {
   const bool along = steps.coin;
   double& half = along ? form.a : form.b;
@@ -209,7 +210,8 @@ void change_fitted(Primitive& primitive, double which, const Steps& steps) {
 }
 
 /// Changes the form of a primitive or of its hole. With `both`, a translation of the hole also translates the form.
-/// Returns the ratio of densities without the prior.
+/// `which`, uniform in [0, 1), selects the kind of change. Returns the density of the reverse proposal divided by that
+/// of this proposal.
 double change_part(Primitive& primitive, bool of_form, bool both, double which, const Steps& steps) {
   Form& form = of_form ? primitive.form : primitive.hole;
   double ratio = 1.0;
@@ -284,7 +286,8 @@ double density(const Push& push) {
   return math::exp(-0.5 * ((push.dx * push.dx + push.dy * push.dy) / (kPushShift * kPushShift) + angle * angle));
 }
 
-/// Changes the time of a push, or its displacement. Returns false if the result is impossible.
+/// Changes the time of a push (the number of taps before it), or its displacement. Returns false if the result is
+/// impossible.
 bool change_push(Push& push, int taps, Random& random) {
   if (random.uniform() < 0.25) {
     constexpr int kFarthest = 3;  // taps

@@ -27,7 +27,7 @@ struct Proposal {
   Push push;
   bool noisy = false;
 
-  /// Resets the proposal to no change of `from`, with ratio 0.
+  /// Resets the proposal: it changes nothing in `from` and has the ratio 0.
   void begin(const Hypothesis& from) {
     ratio = 0.0;
     removed.clear();
@@ -68,10 +68,10 @@ void propose_noise(Proposal& out, const Hypothesis& from);
 /// fit the earlier taps. `rate`: prior weight of a push between two taps, relative to no push. `taps` must be at least
 /// 2.
 ///
-/// The weight omits (1 - rate)^(taps - 1), which all hypotheses share up to one factor 1 - rate. The prior of a
-/// primitive with an object tap omits exp(-r), where r is the expected number of such primitives. It also omits the
-/// part of that factor that the desk taps contribute. Both omitted factors depend on the push; no effect was measured
-/// in 1200 runs.
+/// The ratio omits the factor (1 - rate)^(taps - 1) for the pairs of taps without a push. With a push, the exponent
+/// would be smaller by 1, so the omission changes the ratio only by one factor 1 - rate. The ratio also omits exp(-r),
+/// where r is the expected number of primitives with an object tap, and the effect of the desk taps on r. Both depend
+/// on the push; no effect of their omission was measured in 1200 runs.
 void propose_push(Proposal& out, const Hypothesis& from, const Prior& prior, int taps, double rate, Random& random);
 
 }  // namespace palpate::footprints

@@ -18,7 +18,7 @@ constexpr double kNoiseMoves = 0.02;
 constexpr double kPushMoves = 0.10;
 // Largest contribution of primitives far from the tap to the number of moves.
 constexpr double kMostFar = 3.0;
-// Number of taps after a discovery with twice as many particles.
+// Number of taps after a discovery for which the number of particles is doubled.
 constexpr int kDoubledTaps = 10;
 
 /// Distance in metres within which primitives are exchanged together.
@@ -147,11 +147,11 @@ Sampler::Sampler(const Prior& prior, const SamplerSettings& settings, Random ran
     particles_[i].hypothesis.noisy = settings.position_noise > 0.0 && i % 2 == 1;
 }
 
-// A tap discovers at most one new primitive, which is assumed to contain the tap fully. So an undiscovered primitive
-// whose noisy rim is near the tap is not discovered. The heights of a discovered primitive do not count, and a particle
-// with the maximum number of primitives discovers nothing. Later moves correct these approximations. With 4 mm of
-// noise, the error of probabilities was below 0.01. With heights in the weights, the accuracy of the default did not
-// change.
+// A tap discovers at most one new primitive. The tap is assumed to be so deep inside it that position noise does not
+// matter, so primitives whose rim is just beside the tap are not discovered. The weights ignore the heights in a
+// discovered primitive. A particle with the maximum number of primitives discovers nothing. Later moves correct these
+// approximations. With 4 mm of noise, the error of probabilities was below 0.01. With heights in the weights, the
+// accuracy of the default did not change.
 double Sampler::add(const Touch& touch) {
   likelihood_.add(touch);
   const Taps& taps = likelihood_.taps();
@@ -194,7 +194,8 @@ double Sampler::add(const Touch& touch) {
   return p_label / before;
 }
 
-/// Adds an undiscovered primitive at the tap to each particle, with its probability given the label.
+/// Adds a random undiscovered primitive at the tap to some particles: to each with the probability, given the object
+/// label, that the tap discovered one. `p_new` is the probability before the label is known.
 void Sampler::discover(const UndiscoveredPrimitives::CoveringDraws& covering, double p_new) {
   const Taps& taps = likelihood_.taps();
   const int tap = taps.size() - 1;
@@ -216,7 +217,8 @@ void Sampler::discover(const UndiscoveredPrimitives::CoveringDraws& covering, do
 }
 
 /// Systematic resampling with one random number: the number of copies is proportional to the weight, up to rounding.
-/// The first copy stays at its index. Others replace particles without copies, or exchange primitives with them.
+/// The first copy stays at its index. Every further copy replaces a particle without copies, or only some of its
+/// primitives (resample_partially()).
 void Sampler::resample(const std::vector<double>& weights, double sum, std::size_t count) {
   const double step = sum / static_cast<double>(count);
   const double first = random_.uniform() * step;
@@ -229,8 +231,8 @@ void Sampler::resample(const std::vector<double>& weights, double sum, std::size
     while (cumulative < wanted && from + 1 < weights.size()) cumulative += weights[++from];
     ++copies[from];
   }
-  // Indices of particles without copies, separately for exact and noisy ones, in descending order. Their number is that
-  // of the additional copies and of the particles that must move to the front.
+  // Indices of particles without copies, separately for exact and noisy ones, in descending order. There are as many as
+  // further copies and particles that must move to the front together.
   std::array<std::vector<std::size_t>, 2> free;
   for (std::size_t i = count; i-- > 0;) {
     if (copies[i] == 0) free[particles_[i].hypothesis.noisy ? 1 : 0].push_back(i);
@@ -259,8 +261,9 @@ void Sampler::resample(const std::vector<double>& weights, double sum, std::size
   particles_.resize(count);
 }
 
-/// Returns the number of moves per particle after a tap that left this effective fraction of particles. The number
-/// depends on the states that are moved, which biases the chain by O(1 / particles).
+/// Returns the number of moves per particle after a tap. `effective_share` is the effective sample size after the tap
+/// as a fraction of all particles. The number depends on the particles that are then moved, which biases the chain by
+/// O(1 / particles).
 int Sampler::count_moves(double effective_share) const {
   const Taps& taps = likelihood_.taps();
   const Target latest = taps[taps.size() - 1];
@@ -320,7 +323,7 @@ bool MarkovChain::accept(Particle& particle, const Taps& taps, Likelihood& likel
   proposal.apply(added_rows, rows);
   const LogUnits loss = likelihood.loss(rows, proposal.noisy);
   if (loss > most) return false;
-  // Primitives without an object tap belong to the undiscovered ones.
+  // Rejects primitives without an object tap, because UndiscoveredPrimitives represents them.
   for (const LabelModel::Step* row : added_rows) {
     if (!holds_object(row, taps)) return false;
   }

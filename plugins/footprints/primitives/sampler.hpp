@@ -7,8 +7,9 @@
 //         * P(labels | union, push, noisy) * P(heights | primitives)
 //
 // for n unordered primitives (hypothesis.hpp) with at least one object tap each, a push (proposals.cpp), and noisy
-// positions with prior probability 1/2. [push] is 1 with a push and 0 without one. Undiscovered primitives
-// (undiscovered.hpp) are independent of these primitives, up to approximations that are documented with the code.
+// positions with prior probability 1/2. [push] is 1 with a push and 0 without one; f is the prior density of its
+// displacement. Undiscovered primitives (undiscovered.hpp) are independent of these primitives, up to approximations
+// that are documented with the code.
 #pragma once
 
 #include "proposals.hpp"
@@ -45,7 +46,7 @@ struct SamplerSettings {
 /// A hypothesis with its likelihood, summed over all taps.
 struct Particle {
   Hypothesis hypothesis;
-  TapRows rows;          ///< rows of its primitives, with taps after its push
+  TapRows rows;          ///< depths of the taps in its primitives; the taps are at their positions after its push
   LogUnits loss = 0;     ///< loss of the labels
   LogUnits heights = 0;  ///< evidence of the heights
 
@@ -57,11 +58,11 @@ struct Particle {
 /// share an object tap with them, in either hypothesis. Other primitives stay, because a tap of one object carries no
 /// information about another (local particle filters: Rebeschini and van Handel 2015). Without this rule few distinct
 /// hypotheses of an object would survive while another object is tapped. The likelihood of `to` is not updated. Returns
-/// false, without a change, in three cases: no primitive would stay or more than `most` would result, a hypothesis has
-/// a push, or only one hypothesis has noisy positions. `taps` are the positions as made.
+/// false, without a change, in four cases: no primitive would stay; more than `most` would result; a hypothesis has a
+/// push; only one hypothesis has noisy positions. `taps` are at their original positions.
 ///
-/// This is an approximation: the resampling weights are not corrected for the primitives that stay; the moves that
-/// follow correct the particles. A calibration with the default moves showed no error at a resolution of 0.003.
+/// This is an approximation: the resampling weights are not corrected for the primitives that stay. The subsequent
+/// moves correct the particles. A calibration with the default moves showed no error at a resolution of 0.003.
 bool resample_partially(const Particle& from, const Taps& taps, int most, Particle& to);
 
 /// Taps and their likelihood under a hypothesis.
@@ -137,8 +138,8 @@ class Sampler {
   /// Sets `out` to the probability that each tap's label is an error. A label that noise of the position explains does
   /// not count as an error.
   void label_errors(VectorOut out) const;
-  /// Moves the positions of taps together with the objects: of each tap after which more than half of the particles
-  /// have a push. `positions` contains the original positions.
+  /// Moves the positions of earlier taps together with the pushed objects. A tap's position is moved if more than half
+  /// of the particles have a push after this tap. `positions` contains the original positions.
   void current_positions(Points& positions) const;
   /// Returns the probability that an object of at least `length` metres exists apart from all known primitives.
   double undiscovered_probability(double length) const;
@@ -178,7 +179,7 @@ class Sampler {
   MarkovChain chain_;
   UndiscoveredPrimitives undiscovered_;
   std::vector<Particle> particles_;
-  int doubled_until_ = 0;  ///< number of taps until which the number of particles is doubled
+  int doubled_until_ = 0;  ///< the number of particles is doubled until this number of taps
   /// Cached positions that each particle covers, of the latest query; invalid after a tap.
   std::vector<CoverageGrid::Spans> spans_;
   bool prepared_ = false;

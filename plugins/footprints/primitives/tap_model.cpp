@@ -20,7 +20,7 @@ constexpr double kSlopeGrowth = 0.5;
 // Fractions of level and of sloped tops.
 constexpr double kLevels = 0.5;
 constexpr double kSlopes = 0.3;
-// Fraction of primitives that continue the height of the nearest tap outside.
+// Fraction of primitives whose first height is similar to that of the nearest earlier tap outside.
 constexpr double kContinued = 0.3;
 // Number of nearest earlier taps that are searched; nearly always, one of them is in the same primitive.
 constexpr std::size_t kNeighbours = 8;
@@ -41,7 +41,7 @@ LogUnits to_units(double logarithm) { return std::llround(logarithm * 0x1p20); }
 LabelModel::LabelModel(double label_error, double false_contact, double noise)
     : contradictions_{to_units(0.5 * math::log((1.0 - false_contact) / label_error)),
                       to_units(0.5 * math::log((1.0 - label_error) / false_contact))} {
-  constexpr double kDeviations = 3.5;  // farther away, noise moves less than one tap in 4000 across the rim
+  constexpr double kDeviations = 3.5;  // if the rim is farther away, noise moves less than one tap in 4000 across it
   // Without noise, the steps are so short that no tap is within one step of a rim.
   reach_ = kDeviations * std::max(noise, 1e-12);
   steps_per_metre_ = 0.5 * kSteps / reach_;

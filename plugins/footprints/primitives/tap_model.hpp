@@ -17,9 +17,9 @@ using LogUnits = std::int64_t;
 LogUnits to_units(double logarithm);
 inline double from_units(LogUnits units) { return static_cast<double>(units) * 0x1p-20; }
 
-/// Probability of a tap's label, given its depth in the deepest primitive of a hypothesis. If two rims are within the
-/// noise, this is an approximation: the union of two primitives is deeper, and a thin primitive is less deep. A
-/// calibration with 4 mm of noise showed no error.
+/// Probability of a tap's label, given its depth in the deepest primitive of a hypothesis. The probability is
+/// approximate if two rims are within reach of the noise. Where two primitives overlap, the probability of an object is
+/// too small; in a thin primitive, it is too large. A calibration with 4 mm of noise showed no error.
 class LabelModel {
  public:
   /// `label_error`: probability that an object tap has the label of the desk. `false_contact`: probability that a desk
@@ -43,8 +43,8 @@ class LabelModel {
   double probability(Step step, bool on) const { return entry(step, on).probability; }
   /// Returns the logarithm of the largest probability of the label minus the logarithm of its probability; at least 0.
   std::int32_t loss(Step step, bool on) const { return losses_[index(step, on)]; }
-  /// Returns the sum of the losses of `length` taps, a multiple of 8. `labels` has kInside for object taps and kOutside
-  /// for desk taps, which are the steps without loss.
+  /// Returns the sum of the losses of `length` taps; `length` must be a multiple of 8. `labels` has kInside for object
+  /// taps and kOutside for desk taps, which are the steps without loss.
   LogUnits loss(const Step* steps, const Step* labels, int length) const;
   /// Returns the probability that the label is an error and not an effect of noise near a rim.
   double wrong(Step step, bool on) const { return entry(step, on).wrong; }

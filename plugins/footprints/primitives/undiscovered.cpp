@@ -107,7 +107,8 @@ bool UndiscoveredPrimitives::prepare(const PointsView& positions) {
 }
 
 Eigen::VectorXd UndiscoveredPrimitives::expected_extent() const {
-  constexpr double kExtentUnits = 0x1p24;  // units per square metre, so that sums are integers
+  // units per square metre; areas are rounded to units so that sums are exact integers
+  constexpr double kExtentUnits = 0x1p24;
   GridSums sums(grid_->size());
   for (std::size_t i = 0; i < draws_.size(); i += 2) {
     const Draw& one = draws_[i];

@@ -40,8 +40,9 @@ class UndiscoveredPrimitives {
   CoveringDraws covering(const Target& position) const;
 
   /// Updates the weights with a tap at its original position. Each draw is weighted as if no other primitive could
-  /// explain the label. If a known primitive also contains the desk tap, the weights become too small. Probabilities
-  /// then change by at most 0.01, or by 0.1 if only a noisy rim is known.
+  /// explain the label. If a known primitive also contains the desk tap, the weights become too small. This error
+  /// changes the probability of an object by at most 0.01. The change is at most 0.1 if the contacts with the known
+  /// primitive are all near its rim, within the noise.
   ///
   /// One process serves exact and noisy hypotheses. With position noise, `labels` is the model of noisy ones. The
   /// expected number of primitives is then 0.012 smaller on average (at most 0.026 in 40 scenes of 40 taps). The odds
@@ -55,13 +56,13 @@ class UndiscoveredPrimitives {
   const CoverageGrid& grid() const { return *grid_; }
   /// Returns the rate at each of the prepared positions.
   Eigen::VectorXd rates() const { return rates_.values(unit_); }
-  /// Returns for each prepared position an expected area in square metres. It is the area of all forms, with their
-  /// holes, that cover the position and are apart from known primitives. The sum uses every second draw.
+  /// Returns for each prepared position the expected total area, in square metres, of the undiscovered primitives that
+  /// cover it and are apart from known primitives. The area of a hole counts. The sum uses every second draw.
   Eigen::VectorXd expected_extent() const;
 
-  /// Compares the draws with the hypotheses `known`, at least one. The result is valid until the next tap. A draw is
-  /// apart from a hypothesis if it overlaps none of its primitives. Eight hypotheses give the probability in steps of
-  /// 1/8.
+  /// Counts for each draw the hypotheses in `known` (at least one) from which it is apart. The result is valid until
+  /// the next tap. A draw is apart from a hypothesis if it overlaps none of its primitives. Eight hypotheses give the
+  /// probability in steps of 1/8.
   void compare(const std::vector<const Hypothesis*>& known);
   /// Returns the expected number of primitives of at least `length` metres that are apart.
   double expected_apart(double length) const;

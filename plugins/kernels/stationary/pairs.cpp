@@ -13,8 +13,9 @@ namespace {
 
 namespace hn = math::HWY_NAMESPACE::hn;
 
-/// Computes the pairs of the positions [from, to) with one of the other positions, in vectors of type `reals`. Returns
-/// the first position that was not computed, because fewer positions were left than a vector has elements.
+/// Computes squared_distances() for the pairs of the positions [from, to) with the position `other`, in vectors of type
+/// `reals`. Returns the first position that was not computed, because fewer positions were left than a vector has
+/// elements.
 template <class Reals>
 HWY_INLINE std::ptrdiff_t squared_distances_by_lanes(Reals reals, const Pairs& pairs, std::ptrdiff_t other,
                                                      std::ptrdiff_t from, std::ptrdiff_t to, double most, double scale,

@@ -58,8 +58,8 @@ inline void take_exponentials(Numbers numbers) { math::exp(numbers.data(), numbe
 ///     void own_slopes(z, k, Numbers slope) const;             dk / d log parameter
 ///     static constexpr bool kSeparable;          f(a + b) = f(a) * f(b)
 ///     static constexpr bool kSlopes;             whether f has two derivatives by r everywhere; if so:
-///     void bends(Numbers z) const;               z -> -d^2 f / dr^2, in place; its limit at r = 0, where slopes() must
-///                                                be finite, too
+///     void bends(Numbers z) const;               z -> -d^2 f / dr^2, in place; at r = 0 the limit. slopes() must be
+///                                                finite at r = 0, too
 template <class Shape>
 class StationaryKernel final : public Kernel {
  public:

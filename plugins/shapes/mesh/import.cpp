@@ -41,7 +41,7 @@ constexpr const char* kExportAgain = "export it again";
       "reduce their number");
 }
 
-/// File system for assimp in which no other file exists, such as the materials of an OBJ.
+/// File system for assimp that contains no other files. Materials of an OBJ, for example, are not found.
 class NoOtherFiles final : public Assimp::IOSystem {
  public:
   bool Exists(const char*) const override { return false; }
@@ -61,9 +61,9 @@ std::string format_of(const std::string& file) {
               "export it as .stl, .obj or .ply");
 }
 
-/// Checks by its length or its last word that an STL is complete, because assimp reads incomplete files without an
-/// error. Removes bytes after the end of a binary STL. Converts an STL in text form to lower case, as assimp expects
-/// it.
+/// Checks that an STL is complete, by the length of a binary file or the last word of a text file. assimp reads
+/// incomplete files without an error. Removes bytes after the end of a binary STL. Converts an STL in text form to
+/// lower case, as assimp expects it.
 void make_stl_plain(std::string& bytes, const std::string& file) {
   constexpr std::size_t kHeader = 84;
   constexpr std::size_t kTriangle = 50;
@@ -181,8 +181,8 @@ void limit_memory([[maybe_unused]] std::size_t bytes, [[maybe_unused]] void (*ou
 
 const ChildProcess::Say* say_in_child = nullptr;
 
-/// The work of the child process. Writes 'T' and the triangles after success, else 'E', the reason and a hint. Returns
-/// the exit status.
+/// Reads the mesh in the child process. Writes 'T' and the triangles after success, else 'E', the reason and a hint.
+/// Returns the exit status.
 int answer(const ChildProcess::Say& say, const std::string& bytes, const std::string& file, const std::string& format) {
   limit(RLIMIT_CORE, 0);
   // Valid meshes of 13 and 55 MB take 0.3 and 0.5 s. A broken file of only 102 bytes made assimp run endlessly.

@@ -70,7 +70,7 @@ class Mesh final : public Shape {
   }
 
   /// Parts of a mesh may overlap. A point is therefore inside if the line has entered more surfaces than it has left.
-  /// If the triangles are not oriented consistently, entries and exits are taken in turn.
+  /// If the triangles are not oriented consistently, the surfaces count alternately as entry and exit.
   std::vector<LineInterval> intervals(const Line& line) const override {
     std::call_once(orientation_checked_, [this] { oriented_ = is_oriented(); });
     // The hits of adjacent triangles differ only by rounding. A single step passes over all of them.
@@ -88,7 +88,8 @@ class Mesh final : public Shape {
     int depth = 0;
     for (const Hit& one : hits) {
       const bool was = depth != 0;
-      // The balance is not 0 if the step passed over one side of a wedge.
+      // The balance (entries minus exits) is not 0 if a step passed over only one of two close surfaces, as at a sharp
+      // edge.
       depth = oriented_ && balance == 0 ? depth + (one.enters ? 1 : -1) : 1 - depth;
       if (!was) out.push_back({one.at, one.at});
       if (depth == 0) out.back().end = one.at;

@@ -20,9 +20,9 @@ constexpr std::size_t kMostTriangles = 5'000'000;
 using Soup = std::vector<std::array<float, 3>>;
 
 /// Reads an STL, OBJ or PLY file with assimp, depending on the extension of `file`. Faces with more than three corners
-/// are divided. No other file is read, such as the materials of an OBJ. A child process does the work, because broken
-/// files may crash assimp. Throws Error with the file as its place if the format is not one of these, or if the file is
-/// truncated, invalid, without triangles, or with too many.
+/// are divided. Other files, such as the materials of an OBJ, are not read. A child process does the work, because
+/// broken files may crash assimp. Throws Error with the file as its place if the format is not one of these, or if the
+/// file is truncated, invalid, without triangles, or with too many.
 Soup import_triangles(std::string bytes, const std::string& file);
 
 /// Triangles in metres, in the frame of Shape. The lowest point is at height 0, and the bounding rectangle of the

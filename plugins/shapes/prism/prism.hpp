@@ -17,9 +17,9 @@ using Outline = std::vector<Point>;
 /// Returns the corner that follows corner `i`.
 inline const Point& next(const Outline& outline, std::size_t i) { return outline[i + 1 == outline.size() ? 0 : i + 1]; }
 
-/// Calls visit(x) for each x at which the line `origin + x * direction` crosses the outline, as seen from above. If a
-/// line passes through a corner, it crosses exactly one of the two edges or neither, because the side of the corner is
-/// computed once for both.
+/// Calls visit(x) for each x at which the line `origin + x * direction` crosses the outline, as seen from above. A line
+/// through a corner crosses exactly one of the corner's two edges, or neither. The side of the line on which the corner
+/// lies is computed once for both edges.
 template <class Visit>
 void visit_crossings(const Outline& outline, const Point& origin, const Point& direction, const Visit& visit) {
   const double squared = direction[0] * direction[0] + direction[1] * direction[1];

@@ -166,8 +166,8 @@ function axis(title, more = {}) {
   return { title: { text: title }, zeroline: false, gridcolor: grid, linecolor: lines, tickcolor: lines, ...more };
 }
 
-/// Returns the layout of a plot that can be turned. The axes determine the scale of the plot. Otherwise plotly would
-/// enlarge a flat surface until it fills the plot.
+/// Returns the layout of a plot that can be turned. The ranges of the axes determine the scale of the plot, because
+/// plotly would otherwise enlarge a flat surface until it fills the plot.
 function turntable(scene) {
   return {
     margin: { l: 0, r: 0, t: 0, b: kNarrow.matches ? 56 : 0 },
@@ -209,7 +209,7 @@ function drawLatest(input, draw) {
   return inTurn(() => (wanted === input.value ? draw(Number(wanted)) : undefined));
 }
 
-/// Publishes a description of the current drawing, for which tests wait.
+/// Publishes a description of the current drawing. Tests wait for this description.
 function publishDrawn(what) {
   document.body.dataset.drawn = String(what);
 }

@@ -65,8 +65,8 @@ function showTrouble(trouble) {
   document.getElementById("standing").append(element("p", { class: "trouble" }, foreign(trouble)));
 }
 
-/// Largest number of values in a page's maps. A page with more values is reloaded. It then has maps of fewer moments,
-/// because for a long run the server keeps the maps of only some moments.
+/// Largest number of values in a page's maps. A page with more values is reloaded. The new page has maps of fewer
+/// moments, because the server keeps the maps of only some moments of a long run.
 const kMostNumbers = 12e6;
 
 /// Adds moments to the page of a run. If the slider was at the last tap, it moves to the new last tap.

@@ -27,7 +27,7 @@ class Player {
   async play() {
     const kLookAtEach = 400;  // milliseconds between taps; the time of drawing is added
     const { input } = this.slider;
-    const turn = {};  // A later click creates another object, by which this loop recognises that it must stop.
+    const turn = {};  // A later click replaces this object in this.playing, and this loop then ends.
     this.playing = turn;
     this.label("⏸", "pause");
     if (input.value === input.max) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The page of a run. It has a slider to choose a tap, surface and maps after this tap, and curves against all taps.
+// The page of a run. It has a slider that chooses a tap. It shows the surface and the maps after this tap, and curves
+// over all taps.
 
 /// Layouts of axes, by the value `axis` of a panel (curves.hpp).
 const kAxes = {

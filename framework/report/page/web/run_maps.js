@@ -26,7 +26,8 @@ function unpackMaps(bytes, described, columns, rows) {
 const scaled = (lines, factor) => lines.map((line) => line.map((value) => value * factor));
 const product = (a, b) => a.map((line, row) => line.map((value, column) => value * b[row][column]));
 
-/// Returns whether the contact of a tap counts as on an object at a moment. Returns null for a tap without a contact.
+/// Returns whether the contact of a tap has the label "on an object" at a moment. Returns null for a tap without a
+/// contact.
 const labelAt = (moment, tap) => (tap.on_object === null ? null : tap.on_object !== moment.relabelled.includes(tap.tap));
 
 /// Returns the first `taps` taps of a run in three lists: on the object, on the desk, failed. The labels are the labels
@@ -92,7 +93,7 @@ function mapPanels(data, maps) {
     const exploration = ({ u, w }) => u.map((lines, frame) => product(lines, w[frame]));
     const upTo = (frames) => {
       const largest = extent(frames.flat(2))[1];
-      return [0, largest > 1e-6 ? largest : 1];  // If all values are rounding errors, the range is 0 to 1.
+      return [0, largest > 1e-6 ? largest : 1];  // If all values are only rounding errors, the range is 0 to 1.
     };
     panels.push(panel("w", ({ w }) => w), panel("e", exploration, upTo));
   }

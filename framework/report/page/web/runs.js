@@ -50,7 +50,8 @@ class ErrorPlots {
   }
 }
 
-/// The surfaces after the slider's number of taps, and their differences from the first surface.
+/// The surface of each run after the number of taps that the slider sets, and the differences from the surface of the
+/// first run.
 class Surfaces {
   constructor(data, bytes) {
     this.data = data;

@@ -19,8 +19,8 @@ function rangeOf(values, ends) {
   return { type: "linear", low: low - margin, high: high + margin, range: [low - margin, high + margin] };
 }
 
-/// Draws the settings at their mean cost and error, with a line along the front. Also draws the runs of the settings;
-/// failed runs are grey.
+/// Draws each setting as a point at its mean cost and error, with a line along the front. Also draws the runs of the
+/// settings as points; failed runs are grey.
 function drawFront(sweep, choice) {
   const settings = settingsOf(sweep, choice);
   const here = (jobs) => jobs.filter((job) => sweep.sceneOf(job) === choice.scene);
@@ -59,7 +59,7 @@ function frontTraces(sweep, settings, done, failed, x, y, edge) {
       type: "data",
       symmetric: false,
       array: list.map((one) => one[kind].half ?? 0),
-      // On a logarithmic axis, bars are cut just below the lower end of the axis.
+      // On a logarithmic axis, bars end just below the lower end of the axis.
       arrayminus: list.map((one) => Math.min(one[kind].half ?? 0, type === "log" ? one[kind].mean - low / 2 : Infinity)),
       thickness: 1,
       width: 2,

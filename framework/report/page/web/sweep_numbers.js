@@ -177,8 +177,8 @@ function differs(sweep, name) {
   return values.some((value) => value !== values[0]);
 }
 
-/// Returns the pair of keys with the largest share of value combinations that have jobs, and the first such pair in
-/// case of a tie. If there are fewer than two keys, "" replaces missing keys.
+/// Returns the pair of keys for which the largest share of the combinations of values has jobs. In case of a tie,
+/// returns the first such pair. If there are fewer than two keys, "" replaces missing keys.
 function bestPair(sweep) {
   const keys = sweep.varying;
   let best = [keys[0]?.name ?? sweep.keys[0]?.name ?? "", ""];

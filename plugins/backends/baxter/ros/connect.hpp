@@ -18,7 +18,7 @@ struct ConnectionOptions {
   bool inverse_kinematics = false;  ///< use the robot's IKService
 };
 
-/// Joins the network of ROS_MASTER_URI and waits until joints, endpoint and state have arrived and the robot has
+/// Joins the network of ROS_MASTER_URI. Waits until joints, endpoint and state have arrived, and until the robot has
 /// subscribed to the commands. roscpp starts with the first connection and runs until the process ends, because it
 /// cannot start twice. All other parts of a connection end with the returned object. Throws Error (kind `run`) with
 /// cause and remedy within five seconds of real time. Causes: no master, unresolvable host names, missing data, another

@@ -66,7 +66,7 @@ class Clock {
     return begin_ + std::chrono::duration<double>(Steady::now() - steady_begin_).count();
   }
 
-  /// Converts the reception time of roscpp, which uses the system clock.
+  /// Converts the reception time of roscpp, which uses the system clock, to protocol time.
   double received(const ros::Time& receipt) const {
     if (ros::Time::isSimTime()) return receipt.toSec();
     return now() - std::max(0.0, (ros::Time::now() - receipt).toSec());
