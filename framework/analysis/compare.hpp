@@ -78,7 +78,7 @@ struct Comparison {
   std::vector<ComparedPair> pairs;    ///< pairs of each group with each earlier group, or only with the baseline
   /// Returns the means of all groups with values.
   std::vector<double> means() const;
-  /// Returns whether jobs are the units and a unit has several values, which then come from copies of a run.
+  /// Returns whether jobs are the units and some jobs of a group are copies of one run (StatisticalUnits).
   bool has_copies() const;
 
   /// Number of groups with jobs that satisfy the condition. Other groups have no pairs.

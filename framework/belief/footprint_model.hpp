@@ -54,7 +54,7 @@ class FootprintModel {
   int taken_ = 0;  ///< number of data in the plugin
   Eigen::VectorXd probability_;
   HypothesisSample hypotheses_;
-  Points positions_, positions_now_;  ///< original and current positions
+  Points positions_, positions_now_;  ///< positions of all data when measured, and after pushes of the objects
 };
 
 }  // namespace palpate

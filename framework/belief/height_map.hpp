@@ -48,7 +48,7 @@ class HeightMapBelief final : public Belief {
   const HeightModels& models() const { return models_; }
 
  private:
-  /// Returns the arrays of the surface that `models` compute; null for the other arrays.
+  /// Returns pointers to the arrays of the surface. A pointer is null if `models` does not compute its array.
   SurfaceMaps maps(const ModelSet& models) const;
   SurfaceMaps maps() const { return maps(begun_); }
   std::optional<double> expected_rmse_of(const SurfaceMaps& maps) const;

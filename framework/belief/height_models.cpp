@@ -10,11 +10,11 @@
 
 namespace palpate {
 
-// Standard deviation of the unknown constant level of object heights, as a multiple of the signal. With the multiple
-// 1000, the level is practically free, unless the surface varies by less than a thousandth of its height.
+// Standard deviation of the unknown constant level of object heights, as a multiple of the signal. The multiple 1000
+// makes the prior of the level practically flat, unless the surface varies by less than a thousandth of its height.
 constexpr double kFreeLevel = 1000.0;
-// The same multiple for a GP with an outlier model. If the level were free, the first object tap would count as an
-// outlier.
+// The same multiple for a GP with an outlier model. With a practically flat prior of the level, the first object tap
+// would count as an outlier.
 constexpr double kLevelWithOutliers = 1.0;
 
 namespace {

@@ -22,7 +22,7 @@ class SimulatedRerun {
     double failed = 0.0;  ///< share of taps without a contact, except unreachable taps
     /// share of the contacts whose error differs from the expected error by more than kOutlierError
     double far_off = 0.0;
-    double mean_error = 0.0;  ///< mean error of all other contacts, metres
+    double mean_error = 0.0;  ///< mean error of the contacts that `far_off` does not count, metres
   };
   /// Simulates the taps with `effects`, which have the format of `scene.effects`. Every call uses the same random
   /// draws. `expected`: expected error of each tap, metres; by default, the median error of the tap over the draws.

@@ -281,8 +281,8 @@ void Composer::lay_groups(Tree& tree, const std::vector<Choice>& choices, const 
     if (slot.place.line == 0) slot.place = content.place;
     slot.merge(content);
   };
-  // A part of a group (scene.effects) is merged after all whole groups (scene), because the part replaces the content
-  // of the whole group at the path of the part.
+  // Parts of groups (such as scene.effects) are merged after all whole groups (such as scene). A part replaces
+  // everything that the whole group sets at the path of the part.
   for (const bool parts : {false, true}) {
     for (const Choice& choice : choices) {
       if (keys_.is_part(choice.path) == parts) lay(choice);

@@ -276,7 +276,7 @@ class Resolver final : public MapReader {
                 fmt::format("'palpate plugins {}' lists the types", choice.kind));
   }
 
-  /// Fills `choice` and returns its resolved form at `name` (see around()). If `tree` is null, `choice` is the default.
+  /// Reads the plugin at `name` into `choice`. Returns its type and resolved options. A null `tree` means the default.
   Tree read_plugin(PluginChoice& choice, const Tree* tree, const Field& field, const std::string& name) {
     const std::string path = path_ + name;
     const Tree* const type = tree != nullptr ? type_of(*tree, choice, path) : nullptr;

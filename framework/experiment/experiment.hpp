@@ -107,7 +107,7 @@ class Experiment final {
  private:
   std::shared_ptr<Backend> make_backend(const ExperimentSetup& setup);
   ReadPlan make_plan(const ReadPlan& more) const;
-  /// Begins all stages that must have begun for a tap chosen by `source`.
+  /// Begins all stages of the belief that must begin before a tap chosen by `source`.
   void begin_stages(Source source);
   void draw_candidates();
   /// Passes the belief to Backend::show(). Does nothing before the first tap.

@@ -68,7 +68,7 @@ class SearchDesign {
   /// per row of candidates: differences between neighbouring values of weights(); values outside the row count as 0
   std::vector<int> rises_;
   std::vector<Target> looked_;
-  std::size_t struck_off_ = 0;  ///< number of positions in looked_ that next() has already applied to the discs
+  std::size_t struck_off_ = 0;  ///< number of positions in looked_ that are included in the weights of the discs
 };
 
 }  // namespace palpate

@@ -47,9 +47,9 @@ struct GpDiagnostics {
 /// update of the maps. If the jitter or the hyperparameters change, everything is computed again: n updates of the
 /// maps, and O(n^3) for the factor.
 ///
-/// An unknown constant in the mean is integrated out (the same book, section 2.7). Its posterior needs the vector L^-1
-/// 1, where 1 is the vector of ones, and the map V^T L^-1 1 (engine.hpp defines L and V). Each tap updates this vector
-/// and this map, too.
+/// An unknown constant in the mean is integrated out (the same book, section 2.7). The posterior of the constant needs
+/// the vector L^-1 1, where 1 is the vector of ones, and the map V^T L^-1 1 (engine.hpp defines L and V). Each tap also
+/// updates L^-1 1 and V^T L^-1 1.
 ///
 /// A tap that makes the matrix singular in double precision, such as a duplicate without noise, raises the jitter. The
 /// jitter is a variance on the whole diagonal and part of the model from then on. If no jitter helps, because the
@@ -145,7 +145,7 @@ class GaussianProcess {
 
   Factor factor_;
   Points factored_;                 ///< positions of the factor's rows: all taps except the redundant ones
-  Eigen::MatrixXd solved_;          ///< L^-1 B; see FactoredTaps
+  Eigen::MatrixXd solved_;          ///< L^-1 B, where B contains the standardised targets; see FactoredTaps
   Eigen::VectorXd covariance_;      ///< scratch: covariances of the new tap with the earlier taps
   FactorReport report_;             ///< jitter divided by signal^2; redundant taps are not counted here
   std::vector<double> fit_memory_;  ///< numbers that a fit stores for the next fit

@@ -14,9 +14,9 @@
 // an object contact counts as a desk contact at first, this is corrected once the desk itself is touched. A single low
 // contact may be an outlier, so it is not used as a bound. Two low contacts that agree are used.
 //
-// A contact may be low although the tool did not touch the bare desk, for example on the rim of a dome or after a
-// sudden change of the force reading. Low contacts near a low object contact are left out. The other low contacts are
-// tested for outliers like taps on a surface (gp/outlier_posterior.hpp).
+// A contact may count as desk although the tool did not touch the bare desk. Examples are the rim of a dome, or a
+// sudden change of the force reading. Desk contacts within 3 cm of an object contact lower than 4 cm are not used. The
+// other desk contacts are tested for outliers like taps on a surface (gp/outlier_posterior.hpp).
 //
 // Each motion has an offset of its own in addition to the common offset. A fifth of the prior variance o^2 belongs to
 // the motion's own offset.

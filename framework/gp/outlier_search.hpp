@@ -63,8 +63,8 @@ class OutlierSearch {
   /// Returns an index that is larger than the indices of all remainders of expanded sets.
   int expansions() const { return scratch_; }
 
-  /// Returns the index of the remainder of a set. For a set that was not expanded, the index is valid until the next
-  /// call.
+  /// Returns the index of a set's remainder: the GP without the taps of the set. If the set was not expanded, the index
+  /// is valid until the next call.
   int remainder_of(const OutlierSet& set);
   auto column(int remainder) const { return part(remainder, 0); }          ///< u of the last tap of the set
   auto solved_heights(int remainder) const { return part(remainder, 1); }  ///< A' y

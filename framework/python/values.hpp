@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Conversion of C++ values to Python: maps to arrays, configs to dicts, and tables to columns.
+// Conversion of C++ values to Python: maps become arrays, configs become dicts, and tables become columns.
 #pragma once
 
 #include "config/quantity.hpp"
@@ -36,8 +36,8 @@ inline Array array_of(Map map) {
   return Array({map.rows, map.columns}, kept->data(), owner);
 }
 
-/// Converts a config to Python: maps to dicts, lists, numbers, truth values and texts. Quantities with a unit become
-/// texts.
+/// Converts a config to Python. Maps become dicts; lists, numbers and booleans become the same types of Python. Other
+/// values, such as quantities with a unit, become strings; null becomes None.
 inline py::object python_of(const Tree& tree) {
   switch (tree.kind) {
     case Tree::Kind::null:

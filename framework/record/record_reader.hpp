@@ -15,17 +15,17 @@
 // | note | any other observation about the run |
 // | end | how the run, or this attempt, ended |
 //
-// Rules of the format. RecordReader checks all rules except the last:
+// Rules of the format (RecordReader checks rules 1 to 7):
 //
-// 1. the first line is a manifest, and no other line is;
-// 2. attempts are numbered 1, 2, 3 ... and contain the number of taps so far; setup n follows attempt n, before an
-//    intent or a tap;
-// 3. taps are numbered 1, 2, 3 ...;
-// 4. if taps are announced, exactly one intent k precedes tap k;
-// 5. timing k follows tap k;
-// 6. no line follows an end `done`, which contains the number of taps; only an attempt may follow any other end;
-// 7. only the last line may lack its line end; it is then ignored;
-// 8. a summary.json without an `end` in the record means that the record was cut (RunStatus::cut).
+// 1. The first line is a manifest. No other line is a manifest.
+// 2. Attempts are numbered 1, 2, 3 ... and contain the number of taps so far. Setup n follows attempt n, before the
+//    first intent or tap of this attempt.
+// 3. Taps are numbered 1, 2, 3 ...
+// 4. If taps are announced, exactly one intent k precedes tap k.
+// 5. Timing k follows tap k.
+// 6. No line follows an end `done`, which contains the number of taps. Only an attempt may follow any other end.
+// 7. Only the last line may lack its newline. Such a line is ignored.
+// 8. If summary.json exists but the record has no `end`, the record was cut (RunStatus::cut).
 //
 // Lines of other kinds and unknown fields are ignored. The fields are listed in runs/README.md.
 #pragma once

@@ -10,7 +10,7 @@
 
 namespace palpate {
 
-/// Returns whether `scene.objects` of a composed config is a draw. Also returns true for a draw with invalid options.
+/// Returns whether `scene.objects` of a composed config is a map without `type`: a random draw, valid or invalid.
 bool draws_objects(const Tree& config);
 
 /// Replaces `draw` by a list of random objects that depend only on `seed`. Their number is uniform between `least` and

@@ -82,7 +82,7 @@ std::vector<std::string> pooled_values(const std::vector<PooledSetting>& setting
                                       [&](const PooledSetting& one) { return one.config.find_path(key) != nullptr; });
   ValueClasses classes;
   std::vector<std::pair<std::string, std::string>> marks;  // mark and text of each setting
-  std::map<std::string, std::string> names;                // name of each class, by its mark
+  std::map<std::string, std::string> names;                // name of each class; key: mark from ValueClasses::find()
   for (const PooledSetting& one : settings) {
     const auto swept = one.swept.find(key);
     const bool is_swept = swept != one.swept.end();

@@ -86,7 +86,7 @@ class Wave final : public Shape {
 
   double height_at(double s) const { return o_.height + o_.amplitude * math::cos(2.0 * kPi * s / o_.period); }
 
-  /// Returns the height above the top of the point at distance x along the line.
+  /// Returns the height of the point at distance x along the line, relative to the top surface; metres.
   double clearance(const Line& line, double x) const {
     return line.origin.z() + x * line.direction.z() - height_at(line.origin.x() + x * line.direction.x());
   }

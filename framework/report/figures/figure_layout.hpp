@@ -40,7 +40,7 @@ MapsAtTap without_hidden_taps(const MapsAtTap& snapshot, const SceneFrame& frame
 /// than a picture can show, rows and columns are left out.
 std::string matrix_of(const SceneFrame& frame, const Eigen::VectorXd& values);
 
-/// Returns the columns for gnuplot's `using`, which place the cells of a matrix of matrix_of(), in centimetres.
+/// Returns the columns for gnuplot's `using` for a matrix from matrix_of(): x and y in centimetres, and the value.
 std::string matrix_columns(const SceneFrame& frame);
 
 /// Returns lines "x y height deviation" of the cells of matrix_of(), in centimetres, with a blank line after each row.

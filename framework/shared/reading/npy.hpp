@@ -26,7 +26,7 @@ struct NpyHeaderSpan {
 /// or the file is not an NPY file.
 std::optional<NpyHeaderSpan> npy_header_place(std::string_view bytes);
 
-/// Description of the values in a header. Missing or malformed parts are empty.
+/// Description of an array, as the header of its file contains it. Missing or malformed parts are empty.
 struct NpyHeader {
   std::string type;   ///< byte order, kind and size, such as "<f8"; for structured types the text of the header
   std::string order;  ///< "False" for C order (by rows), "True" for Fortran order

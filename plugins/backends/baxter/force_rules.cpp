@@ -57,7 +57,7 @@ std::optional<Fault> MotionGuard::check_frozen(const EndpointReading& endpoint, 
                AllowedAction::hold};
 }
 
-/// Returns the fault of the firmware's reflex. If the arm was rising under a pull, the tool is caught.
+/// Returns the fault to report after the firmware's reflex: a caught tool if the arm was rising against a pull.
 std::optional<Fault> MotionGuard::reflex_fault(const Snapshot& seen, const Eigen::Vector3d& tip) const {
   if (motion_.rise) {
     const double pulls = pull_force(*motion_.rise, *seen.endpoint);

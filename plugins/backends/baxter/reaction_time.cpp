@@ -13,7 +13,7 @@ namespace {
 constexpr std::size_t kMotions = 5;  ///< the trailing time is the maximum of this number of latest motions
 /// number of last contacts in the mean; five with a soft object leave an uncertainty of 0.1 s
 constexpr std::size_t kContacts = 10;
-constexpr double kFades = 30.0;          ///< s: time constant with which a lateness decays
+constexpr double kFades = 30.0;          ///< s: time constant of the decay of the largest delay; see late()
 constexpr std::size_t kFewest = 30;      ///< minimum number of periods of a free descent
 constexpr double kClear = 0.001;         ///< m above the onset from which the tip counts as free
 constexpr double kLeastNoticing = 0.04;  ///< s: three readings at 100 Hz, and one control period

@@ -7,9 +7,9 @@
 namespace palpate::tapping {
 namespace {
 
-/// Length in metres of the shortest part of a descent that is searched, and largest fraction of the searched part that
-/// the rise may take.
+/// Length of the first window at the bottom of a descent, metres. If the rise starts above it, its length doubles.
 constexpr double kFirstWindow = 0.02;
+/// Largest accepted height of an onset above the bottom, as a fraction of the window's length.
 constexpr double kInside = 0.6;
 
 /// Returns the sum of squares that the best hinge with this kink explains: the reduction relative to a constant force.

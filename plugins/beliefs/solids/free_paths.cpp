@@ -38,7 +38,7 @@ std::vector<FreePathPoint> passages_of(const ResidualKernel& kernel, const Assem
     for (double along = 0.0; along < touches[way].length;) {
       const Vector3d at = touches[way].line.origin + along * touches[way].line.direction;
       const double distance = solids.distance(at);
-      if (!(distance >= -deepest)) {  // so deep inside, the assembly is wrong, which the residual GP cannot correct
+      if (!(distance >= -deepest)) {  // skip the path: the residual GP cannot correct so large an error of the assembly
         out.resize(first);
         break;
       }

@@ -10,8 +10,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// The function f (see mesh.hpp). The residual GP is evaluated only near the assembly's surface; further away it cannot
-/// change the sign of f. Positions are evaluated in batches, which is faster.
+/// The function f of mesh.hpp: 0 on the estimated surface, negative inside. The residual GP is evaluated only near the
+/// assembly's surface; further away it cannot change the sign of f. Evaluation in batches is faster.
 class SignedSurface {
  public:
   SignedSurface(const Assembly& solids, const ResidualGp& residual_gp)

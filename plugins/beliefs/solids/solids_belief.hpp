@@ -25,10 +25,10 @@ namespace palpate {
 /// - expected_discovery, metres: expected change of the surface by objects that a tap along the line discovers. The
 ///   prior is assumed to expect one primitive more than the particle contains. Such a primitive counts if no touch so
 ///   far contradicts it and the line meets it before the estimated surface. The value is the probability of such a
-///   primitive times the change by it. The change is the mean distance by which lines from all sides meet the surface
-///   earlier, at most 3 cm per line.
-/// - std_reduction, metres: expected decrease by a tap of the mean standard deviation over the whole estimated surface.
-///   The value is 0 for lines that meet no object, or meet it at less than 30 degrees to its surface.
+///   primitive times the change. The change is the decrease of the distance to the surface along a line, at most 3 cm,
+///   averaged over lines from all sides.
+/// - std_reduction, metres: expected decrease of the surface's mean standard deviation after a tap along the line. The
+///   value is 0 for lines that meet no object, or meet it at less than 30 degrees to its surface.
 /// - surface_std, metres: standard deviation of the surface along its normal where the line meets it; else 0.
 class SolidsBelief final : public Belief {
  public:

@@ -67,7 +67,7 @@ class TapRows {
   std::vector<Step> steps_;
 };
 
-/// Sets `out` to the largest step of each tap over all rows: the step in the union of the primitives.
+/// Sets `out` to the largest entry of all rows for each tap: the depth of the tap in the union of the primitives.
 void find_deepest(const RowList& rows, int length, LabelModel::Step* out);
 /// holds_object(): Returns whether an object tap is inside the primitive of `row`. share_object(): Returns whether one
 /// object tap is inside both primitives. hold_different_objects(): Returns whether some object tap is inside exactly

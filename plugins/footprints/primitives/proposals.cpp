@@ -200,7 +200,7 @@ void change_family(Form& form) {
   form.b *= box ? kSameExtent : 1.0 / kSameExtent;
 }
 
-/// Changes the fractions of a fitted hole, and sometimes its corner.
+/// Changes the size of a fitted hole. If the hole is at a corner of a box, sometimes changes the corner, too.
 void change_fitted(Primitive& primitive, double which, const Steps& steps) {
   constexpr double kOtherCorner = 0.05;
   primitive.along += kHoleStep * steps.one;

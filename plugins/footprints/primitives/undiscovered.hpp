@@ -60,11 +60,11 @@ class UndiscoveredPrimitives {
   /// cover it and are apart from known primitives. The area of a hole counts. The sum uses every second draw.
   Eigen::VectorXd expected_extent() const;
 
-  /// Counts for each draw the hypotheses in `known` (at least one) from which it is apart. The result is valid until
-  /// the next tap. A draw is apart from a hypothesis if it overlaps none of its primitives. Eight hypotheses give the
-  /// probability in steps of 1/8.
+  /// A draw is apart from a hypothesis if it overlaps none of the hypothesis's primitives. For each draw, counts the
+  /// hypotheses in `known` from which the draw is apart. `known` must not be empty. The counts are valid until the next
+  /// tap. Eight hypotheses give the probability in steps of 1/8.
   void compare(const std::vector<const Hypothesis*>& known);
-  /// Returns the expected number of primitives of at least `length` metres that are apart.
+  /// Returns the expected number of primitives of at least `length` metres that are apart from known hypotheses.
   double expected_apart(double length) const;
   /// Calls visit(primitive, expected number) for each draw, for tests against the exact process.
   template <class Visit>

@@ -19,9 +19,9 @@ function showConnection(words) {
   if (note) note.textContent = words;
 }
 
-/// Requests updates from the server in a loop. `take` applies each update; no drawing runs at the same time. A page in
-/// the background sends requests rarely and keeps no connection open, because browsers allow few connections per
-/// server.
+/// Requests updates from the server in a loop, and calls `take` with each update. `take` never runs at the same time as
+/// a drawing of the page (see inTurn()). A page in the background sends requests rarely and keeps no connection open,
+/// because browsers allow few connections per server.
 async function follow(data, take) {
   const kSleep = 20000;
   const kAfterTrouble = 2000;

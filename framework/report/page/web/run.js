@@ -191,7 +191,7 @@ class Slider {
 /// Returns a line about the quantities that are constant in the run.
 const constants = (texts) => (texts.length > 0 ? [element("p", { class: "sub constants" }, "Constant over all taps: ", foreign(texts.join("; ")), ".")] : []);
 
-/// Returns the section with the maps of a run from above.
+/// Returns the section with the maps of a run that taps from above.
 function mapSection(slider) {
   return [
     element("h2", {}, "Maps"),
