@@ -227,8 +227,8 @@ std::vector<Edge> find_crossed_edges(const Crossings& grid, const std::vector<do
       if (!grid.crosses(i, axis)) continue;
       const auto node = static_cast<std::size_t>(i);
       const auto next = node + static_cast<std::size_t>(grid.strides()[axis]);
-      const Vector3d from = grid.origin + grid.side * Vector3d(i % nx, i / nx % ny, i / (nx * ny));
-      out.push_back({from, static_cast<Eigen::Index>(axis), f[node], f[next]});
+      const Eigen::Vector3i at(i % nx, i / nx % ny, i / (nx * ny));
+      out.push_back({grid.origin + grid.side * at.cast<double>(), static_cast<Eigen::Index>(axis), f[node], f[next]});
     }
   }
   return out;
