@@ -105,8 +105,8 @@ class Field {
   Field& of_strategy() { return owner = Owner::strategy, *this; }
   Field& of_run() { return owner = Owner::run, *this; }
   /// For a plugin field: moves the plugin's option group with the name `option` out of the plugin's block, to a key of
-  /// its own on the same level. Example: the options `motion` of a backend are at the key `motion`, not
-  /// `backend.motion`. The group belongs to the run; a strategy may set its default.
+  /// its own on the same level. Example: the options `motion` of a backend are at the key `motion`, outside the block
+  /// `backend`. The group belongs to the run; a strategy may set its default.
   Field& with_beside(const char* option) { return beside = option, *this; }
 
   /// Sets the neutral value, with which a run is the same as before the option existed. An option with this value does
