@@ -48,9 +48,12 @@ SweepTableRow row_of(const JobGroup& group, const std::string& error, const Init
   // Largest number of jobs whose configs are read. One config would suffice, but it may be damaged.
   constexpr std::size_t kMostAsked = 3;
   std::optional<int> initial;  // number of initial taps, equal for all jobs of a group
-  for (std::size_t i = 0; i < std::min(kMostAsked, group.jobs.size()) && !initial; ++i) {
-    const auto& [job, row] = group.jobs[i];
-    if (row != nullptr) initial = initial_taps(static_cast<std::size_t>(job->index), *row);
+  std::size_t asked = 0;
+  for (const auto& [job, row] : group.jobs) {
+    if (initial || asked == kMostAsked) break;
+    if (row == nullptr) continue;
+    ++asked;
+    initial = initial_taps(static_cast<std::size_t>(job->index), *row);
   }
   for (const auto& [job, row] : group.jobs) {
     if (row == nullptr) continue;

@@ -109,6 +109,18 @@ TEST(SweepTable, HasNoShareWithoutContactWhereNoConfigTellsWhichTapsWereInitial)
   EXPECT_THAT(table_of_seeds("done", std::nullopt, fields), HasSubstr("\nall jobs     2           -  100.0%  "));
 }
 
+TEST(SweepTable, CountsStartsWithoutAContactThoughTheFirstJobsHaveNotEnded) {
+  Sweep sweep{"runs/x/0123456789ab", {"seed"}, {}};
+  for (int i = 0; i < 5; ++i) sweep.jobs.push_back({i, "id", {std::to_string(i)}});
+  Row row;
+  row.add("job", 4);
+  row.add("seed", "4");
+  row.add("status", "done");
+  row.add("first_hit_tap", 2);
+  EXPECT_THAT(sweep_table(sweep, {row}, [](std::size_t, const Row&) { return 3; }),
+              HasSubstr("\nall jobs     1        0.0%  100.0%  "));
+}
+
 TEST(SweepTable, LeavesOutWhatIsNoNumber) {
   Row fields;
   for (const char* name : {"first_hit_tap", "object_taps", "rmse_m", "footprint_iou"}) fields.add(name, "x");
