@@ -5,6 +5,8 @@ add_library(palpate_report STATIC
   analysis/sweep_table.cpp analysis/runs_table.cpp analysis/pareto.cpp analysis/pareto_report.cpp analysis/compare.cpp
   analysis/compare_report.cpp analysis/means_table.cpp analysis/group_curves.cpp analysis/group_curves_report.cpp
   analysis/gnuplot.cpp
+  tune/description.cpp tune/search_space.cpp tune/elimination.cpp tune/race.cpp tune/planner.cpp tune/tuner.cpp
+  tune/race_report.cpp
   calibrate/contact_fit.cpp calibrate/simulated_rerun.cpp calibrate/calibrate.cpp
   report/contours.cpp report/history.cpp report/curves.cpp report/colours.cpp
   report/page/assets.S report/page/page.cpp

@@ -14,7 +14,7 @@ endforeach()
 file(CONFIGURE OUTPUT launch/launcher_table.inc CONTENT "${launcher_table}")
 
 add_library(palpate_sweep STATIC
-  sweep/where_condition.cpp sweep/sobol.cpp sweep/description.cpp sweep/plan.cpp sweep/draft.cpp
+  sweep/where_condition.cpp sweep/sobol.cpp sweep/description.cpp sweep/planner.cpp sweep/plan.cpp sweep/draft.cpp
   sweep/sweep.cpp sweep/pooled_sweep.cpp sweep/pooled_keys.cpp sweep/pooled_values.cpp sweep/results_after_taps.cpp sweep/tap_summaries.cpp
   launch/job.cpp launch/execute_jobs.cpp launch/parallel_children.cpp launch/slurm.cpp launch/mounts.cpp
   launch/launcher_table.cpp ${launcher_files})

@@ -35,12 +35,19 @@ double mean_of_clusters(const Clusters& clusters) {
   return out;
 }
 
+using StudentsT = boost::math::students_t_distribution<double, Doubles>;
+
 }  // namespace
+
+double student_tail(double value, double degrees) {
+  return boost::math::cdf(boost::math::complement(StudentsT(degrees), value));
+}
+
+double student_quantile(double share, double degrees) { return boost::math::quantile(StudentsT(degrees), share); }
 
 double student_factor(std::size_t degrees) {
   constexpr double kTail = 0.025;
-  const boost::math::students_t_distribution<double, Doubles> distribution(static_cast<double>(degrees));
-  return boost::math::quantile(boost::math::complement(distribution, kTail));
+  return boost::math::quantile(boost::math::complement(StudentsT(static_cast<double>(degrees)), kTail));
 }
 
 std::vector<double> cluster_means(const Clusters& clusters) {

@@ -55,6 +55,11 @@ MeanEstimate estimate_mean(const Clusters& clusters, double scale = 0.0);
 /// 1.960 in the limit. `degrees` must be at least 1.
 double student_factor(std::size_t degrees);
 
+/// Return the probability that Student's t with `degrees` degrees of freedom exceeds `value`, and the value that it exceeds
+/// with probability 1 - `share`.
+double student_tail(double value, double degrees);
+double student_quantile(double share, double degrees);
+
 /// Returns the quantile of the standard normal distribution for a probability between 0 and 1.
 double normal_quantile(double share);
 

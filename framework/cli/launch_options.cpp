@@ -27,7 +27,7 @@ Argument add_launch(const Command& command, LaunchArguments& launch) {
   const char* const slurm = "With --launcher slurm";
   command.argument("--partition", launch.cluster.partition, "NAME",
                    "Slurm partition for the jobs; default: the cluster's default partition", {below(slurm)});
-  command.argument("--time", launch.cluster.time, "TIME",
+  command.argument("--task-time", launch.cluster.time, "TIME",
                    "time limit of a Slurm task, in the format of sbatch, for example 1:30:00", {below(slurm)});
   command.argument("--account", launch.cluster.account, "NAME", "Slurm account that is charged for the jobs",
                    {below(slurm)});
@@ -44,7 +44,7 @@ Argument add_launch(const Command& command, LaunchArguments& launch) {
 void check_launch(const LaunchArguments& launch) {
   const bool on_cluster = is_cluster(launch.launcher);
   const std::pair<const char*, bool> given[]{
-      {"--partition", !launch.cluster.partition.empty()},    {"--time", !launch.cluster.time.empty()},
+      {"--partition", !launch.cluster.partition.empty()},    {"--task-time", !launch.cluster.time.empty()},
       {"--account", !launch.cluster.account.empty()},        {"--sbatch", !launch.cluster.words.empty()},
       {"--jobs-per-task", launch.jobs_per_task.has_value()}, {"--wait", launch.wait}};
   for (const auto& [name, is_given] : given) {

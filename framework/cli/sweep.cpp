@@ -8,6 +8,8 @@
 #include "cli/output.hpp"
 #include "cli/resume.hpp"
 #include "cli/sweep_display.hpp"
+#include "cli/sweep_execution.hpp"
+#include "cli/tune.hpp"
 #include "cli/watcher.hpp"
 #include "config/catch_error.hpp"
 #include "launch/job.hpp"
@@ -35,23 +37,6 @@
 namespace palpate::cli {
 namespace {
 
-/// A sweep that is being started or resumed.
-struct SweepExecution {
-  const CommandEnvironment& program;
-  const Sweep& sweep;
-  ResumeOptions options;
-  const LaunchArguments& launch;
-  std::vector<std::size_t> only;  ///< numbers of the jobs to run; if empty, all jobs
-  bool one_at_a_time = false;     ///< whether a backend moves something that exists only once, such as an arm
-  /// For `palpate sweep`, the config of the first job with the current expectations; nullopt for `palpate resume`.
-  std::optional<ResolvedConfig> first = std::nullopt;
-};
-
-/// Returns all jobs for which this process is responsible, including finished ones.
-std::vector<std::size_t> jobs_of(const SweepExecution& execution) {
-  return execution.only.empty() ? all_jobs(execution.sweep) : execution.only;
-}
-
 /// Prints the last messages of a process that ran only a part of the sweep, such as a task of a cluster. The process
 /// that submitted the tasks prints the results of the whole sweep.
 int finish_part(const Sweep& sweep, const JobStates& end, bool interrupted, bool all_recorded) {
@@ -63,19 +48,6 @@ int finish_part(const Sweep& sweep, const JobStates& end, bool interrupted, bool
   if (!end.failures.empty() || !all_recorded) return kFailed;
   return end.open.empty() ? kDone : kBusy;
 }
-
-/// Returns the config of a job. Returns nullopt if the config is damaged. A job with a damaged config fails when it is
-/// run, and then reports the reason.
-std::optional<ResolvedConfig> readable_config(const SweepExecution& execution, std::size_t job) {
-  std::optional<ResolvedConfig> config;
-  catch_error(
-      [&] { config = load_run(execution.program.host, job_directory(execution.sweep, execution.sweep.jobs[job])); });
-  return config;
-}
-
-/// State of the jobs after the launch. `ended_unrecorded`: all jobs have ended, but some ends or files could not be
-/// recorded. `blocked`: a job could not begin, for a reason that applies to all jobs and was printed on stderr.
-enum class LaunchOutcome { submitted, ended, ended_unrecorded, blocked };
 
 /// Returns the maximum number of initial taps of a job; nullopt if the number depends on a camera's view. If the run
 /// begins with a search or taps from any side, all its taps may be initial taps. `result`: the job's row of
@@ -115,101 +87,13 @@ int finish_whole(const SweepExecution& execution, const JobStates& end, bool int
   return open ? kFailed : sweep_status(config->expectations, all_hold, !end.failures.empty());
 }
 
-bool is_on_cluster(const SweepExecution& execution) { return is_cluster(execution.launch.launcher); }
-
-LaunchOptions launch_options(const SweepExecution& execution) {
-  const LaunchArguments& launch = execution.launch;
-  const int workers = launch.workers.value_or(is_on_cluster(execution) ? 1 : cores());
-  return {execution.one_at_a_time ? 1 : workers,
-          execution.options,
-          launch.attempts,
-          execution.only.empty(),
-          execution.one_at_a_time,
-          launch.cluster,
-          launch.jobs_per_task.value_or(1)};
-}
-
-/// Prints the commands that show, resume and stop the jobs on a cluster.
-void print_next_commands(const SweepExecution& execution, const Launcher& launcher) {
-  const std::string directory = shell_word(std::filesystem::absolute(execution.sweep.directory).string());
-  print_out("watch progress with: palpate status {}\n", directory);
-  print_out("run missing jobs afterwards with: palpate resume {} --launcher {}\n", directory,
-            execution.launch.launcher);
-  print_out("stop: {}\n", launcher.stop_command());
-}
-
-/// Runs all open jobs and returns when they have ended. On a cluster without --wait, returns after the jobs are
-/// submitted.
-LaunchOutcome launch_open(const SweepExecution& execution, const JobStates& begun) {
-  const auto print_array = [](const TaskArray& array) {
-    print_out("array {}: {}, {}, logs in {}\n", array.id, counted(array.tasks, "task"), counted(array.jobs, "job"),
-              array.logs.string());
-    if (!array.doubt.empty())
-      print_message(fmt::format("no node can run array {} now: {}; 'sinfo' shows the nodes\n", array.id, array.doubt));
-    flush_output();
-  };
-  const CommandEnvironment& program = execution.program;
-  const std::unique_ptr<Launcher> launcher =
-      launcher_type(execution.launch.launcher).make({program, execution.sweep, launch_options(execution), print_array});
-  if (is_on_cluster(execution)) {
-    if (begun.open.empty() || program.interrupted->load()) return LaunchOutcome::ended;  // There is nothing to submit.
-    if (!execution.launch.wait) {
-      launcher->submit(begun.open);
-      print_next_commands(execution, *launcher);
-      return LaunchOutcome::submitted;
-    }
-    // If the terminal is closed, the program stops waiting, but the jobs continue. Under nohup, the program continues
-    // to wait.
-    if (std::signal(SIGHUP, SIG_DFL) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);
-  }
-  SweepLine line(execution.launch.quiet);
-  bool blocked = false;
-  const bool all_recorded =
-      execute_jobs(*launcher, execution.sweep, begun, program.interrupted, [&](const SweepProgress& progress) {
-        blocked = progress.blocked;
-        line.show(progress);
-      });
-  return blocked ? LaunchOutcome::blocked : all_recorded ? LaunchOutcome::ended : LaunchOutcome::ended_unrecorded;
-}
-
-/// Returns all jobs that are not done, ascending.
-std::vector<std::size_t> jobs_not_done(const JobStates& standing) {
-  std::vector<std::size_t> out = standing.open;
-  for (const FailedJob& one : standing.failures) out.push_back(one.job);
-  std::sort(out.begin(), out.end());
-  return out;
-}
-
-/// Sets `one_at_a_time` if a config requires it. Without --force, throws Error if another build started one of these
-/// jobs.
-void check_builds(SweepExecution& execution, const std::vector<std::size_t>& jobs) {
-  for (const std::size_t job : jobs) {
-    const std::filesystem::path directory = job_directory(execution.sweep, execution.sweep.jobs[job]);
-    const std::optional<ResolvedConfig> config = readable_config(execution, job);
-    if (!config) continue;
-    execution.one_at_a_time = execution.one_at_a_time || execution.program.host.one_at_a_time(config->notes.plugins);
-    std::optional<Error> objection;
-    catch_error([&] { objection = objection_to_build(execution.program, *config, read_run_record(directory)); });
-    if (objection && !execution.options.force) throw *objection;
-  }
-}
-
 /// Runs the jobs that have not ended, prints the result and checks the expectations. Returns the exit status.
 int execute_sweep(const SweepExecution& execution, JobStates begun) {
   const Sweep& sweep = execution.sweep;
-  check_locks(sweep.directory);
   const bool whole = execution.only.empty();
-  // A node that runs a part of the jobs may mount the folder with other options than the node that submitted the jobs.
-  if (is_on_cluster(execution) || !whole) check_shared_locks(sweep.directory);
-  listen_for_interrupts();
-  outlive_reader();
-  set_record_line("resume with: palpate resume " + sweep.directory.string());
+  begin_execution(execution);
   const std::vector<std::size_t> jobs = jobs_not_done(begun);
   if (execution.options.retry_failed) reopen_failed(begun);
-  if (execution.one_at_a_time && begun.open.size() > 1 && !execution.launch.quiet) {
-    print_message("jobs run one at a time, because the backend moves only one arm\n");
-  }
-  if (execution.launch.watch) start_watcher(execution.program, sweep.directory);
   const LaunchOutcome launched = launch_open(execution, begun);
   if (launched == LaunchOutcome::submitted) return kDone;
   // Missing files of ended jobs are not checked here. execute_jobs() has reported them, and this build may be unable to
@@ -244,20 +128,6 @@ std::vector<std::size_t> parse_jobs(const std::string& text, std::size_t count) 
     for (std::size_t job = first; job <= last; ++job) jobs.insert(job);
   }
   return {jobs.begin(), jobs.end()};
-}
-
-/// Returns the entry of the launcher in the table of launchers. Throws Error for options that the launcher rejects.
-const LauncherType& checked_launcher(const LaunchArguments& launch) {
-  const LauncherType& out = launcher_type(launch.launcher);
-  if (out.check_options != nullptr) out.check_options(launch.cluster);
-  return out;
-}
-
-/// Throws Error if the taps of the sweep are made by a Python program (backend `caller`).
-void check_taps_are_own(const ResolvedConfig& config, const std::string& place) {
-  if (config.options.backend.type != kCaller) return;
-  throw Error(place, "the taps of this sweep are made by the caller's own program, not by palpate",
-              "create it with palpate.begin_sweep() in Python, and run its jobs with experiments()");
 }
 
 }  // namespace
@@ -313,6 +183,7 @@ int resume_sweep(CommandEnvironment& program, const ResumeArguments& arguments) 
   const auto refuse = [](const std::string& reason, const char* hint) { throw Error("command line", reason, hint); };
   if (arguments.step) refuse("--step: " + arguments.directory + " is a sweep of many runs", "leave it out");
   const Sweep sweep = read_sweep(arguments.directory);
+  if (!sweep.rounds.empty() && arguments.jobs.empty()) return resume_race(program, arguments);
   SweepExecution execution{program, sweep, arguments.options, arguments.launch, {}, false};
   if (!arguments.jobs.empty()) {
     execution.only = parse_jobs(arguments.jobs, sweep.jobs.size());

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "config/expand.hpp"
 
+#include "config/quantity.hpp"
+
 #include <palpate/error.hpp>
 #include <palpate/math.hpp>
 
@@ -124,9 +126,15 @@ double ContinuousRange::at(double share) const {
 std::optional<ContinuousRange> parse_continuous(const Tree& value, const std::string& key) {
   const std::optional<RangeCall> call = parse_call(value, key, {"uniform", "log_uniform"}, kContinuousHint);
   if (!call) return std::nullopt;
-  const std::vector<Bound>& ends = call->bounds;
+  std::vector<Bound> ends = call->bounds;
   if (ends.size() != 2) refuse(value, key, "does not have two ends", kContinuousHint);
-  if (ends[0].unit != ends[1].unit) refuse(value, key, "has ends with different units", kContinuousHint);
+  if (ends[0].unit != ends[1].unit) {
+    const auto one = any_quantity("1 " + ends[0].unit);
+    const auto last = any_quantity(fmt::format("{} {}", ends[1].value, ends[1].unit));
+    if (!one || !last || one->unit != last->unit)
+      refuse(value, key, "has ends with units of different dimensions", kContinuousHint);
+    ends[1] = {as_decimal(last->value / one->value), ends[0].unit};
+  }
   const ContinuousRange range{call->name == "log_uniform", ends[0].value, ends[1].value, ends[0].unit};
   if (range.logarithmic && !(range.first > 0.0)) refuse(value, key, "is not above 0", "both ends must be");
   if (!(range.first < range.last) || !std::isfinite(range.last - range.first))

@@ -47,13 +47,14 @@ struct ContinuousRange {
   double at(double share) const;
 };
 
-/// Parses a continuous range. Returns nullopt for any other value. Throws Error, which names `key`, for ends with
-/// different units or in the wrong order.
+/// Parses a continuous range. If its ends have different units, the last end is converted to the unit of the first.
+/// Returns nullopt for any other value. Throws Error, which names `key`, for ends with units of different dimensions or
+/// in the wrong order.
 std::optional<ContinuousRange> parse_continuous(const Tree& value, const std::string& key);
 
 /// The hint of errors about continuous ranges.
 inline constexpr const char* kContinuousHint =
-    "write uniform(0.1 mm, 1 mm) or log_uniform(1 cm, 10 cm), both ends with the same unit";
+    "write uniform(0.1 mm, 1 mm) or log_uniform(1 cm, 10 cm), with a unit at both ends";
 
 /// Returns a scalar with the text of a number and its unit, and with the source location of `like`.
 Tree number(double value, const std::string& unit, const Tree& like);

@@ -171,24 +171,29 @@ std::string belief_option(const ExperimentOptions& options, const char* path) {
 std::string motion_name(const ExperimentOptions& options) { return option_text(options.backend, "motion.type"); }
 
 std::vector<Field> keys_beside_options() {
-  return {Field("defaults",
-                "list of config groups to read, for example '- kernel: rbf' for kernel/rbf.yaml. Later entries "
-                "override earlier entries, and this file overrides all entries")
-              .of_strategy(),
-          Field(kStrategy,
-                "strategy, which sets the choice of taps and the models. The value is NAME for strategy/NAME.yaml, or "
-                "the path of a config file")
-              .of_strategy()
-              .group(),
-          Field("sweep",
-                "keys and values that 'palpate sweep' varies. Jobs are all combinations of the blocks, in the order of "
-                "the blocks")
-              .of_run(),
-          Field("expect",
-                "expected values of summary fields, for example first_hit_tap: '<= 9'. For a sweep, statistics are "
-                "possible, for example median(taps): '<= 17'")
-              .of_run()
-              .group()};
+  return {
+      Field("defaults",
+            "list of config groups to read, for example '- kernel: rbf' for kernel/rbf.yaml. Later entries "
+            "override earlier entries, and this file overrides all entries")
+          .of_strategy(),
+      Field(kStrategy,
+            "strategy, which sets the choice of taps and the models. The value is NAME for strategy/NAME.yaml, or "
+            "the path of a config file")
+          .of_strategy()
+          .group(),
+      Field("sweep",
+            "keys and values that 'palpate sweep' varies. Jobs are all combinations of the blocks, in the order of "
+            "the blocks")
+          .of_run(),
+      Field("tune",
+            "keys and ranges among which 'palpate tune' searches for the best setting, the metric, and the number of "
+            "runs")
+          .of_run(),
+      Field("expect",
+            "expected values of summary fields, for example first_hit_tap: '<= 9'. For a sweep, statistics are "
+            "possible, for example median(taps): '<= 17'")
+          .of_run()
+          .group()};
 }
 
 const ConfigKeys& config_keys() {

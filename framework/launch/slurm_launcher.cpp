@@ -43,7 +43,7 @@ struct ReservedOption {
 constexpr const char* kOwnOption = "use palpate's own option of this name";
 constexpr std::array<ReservedOption, 10> kReservedOptions{
     {{"--partition", "-p", kOwnOption},
-     {"--time", "-t", kOwnOption},
+     {"--time", "-t", "use palpate's own option --task-time"},
      {"--account", "-A", kOwnOption},
      {"--wait", "-W", kOwnOption},
      {"--cpus-per-task", "-c", "set the cores per task with -j"},

@@ -25,6 +25,7 @@ std::string identity_text(const ResolveNotes& notes) {
 ResolvedConfig resolve_experiment(const Tree& composed, const PluginSource& plugins) {
   Tree input = composed;
   input.erase("sweep");
+  input.erase("tune");
   input.erase("expect");
   ResolvedConfig out;
   if (draws_objects(input)) {

@@ -28,8 +28,8 @@ HeightMapOptions height_map_options(const ExperimentOptions& options, const Plug
 /// that affects the results, sorted by bytes.
 std::string identity_text(const ResolveNotes& notes);
 
-/// Checks a composed config, loads the plugins that it uses, and returns the resolved config. Ignores the block
-/// `sweep:`. Throws Error.
+/// Checks a composed config, loads the plugins that it uses, and returns the resolved config. Ignores the blocks
+/// `sweep:` and `tune:`. Throws Error.
 ResolvedConfig resolve_experiment(const Tree& composed, const PluginSource& plugins);
 
 /// Number of hex digits of an id.

@@ -60,7 +60,7 @@ SweepDraft::~SweepDraft() {
 }
 
 void SweepDraft::add(const Job& job, const ResolvedConfig& config) {
-  const fs::path directory = folder_ / "jobs" / job.id;
+  const fs::path directory = job_directory(job);
   make_folder(directory);
   // No temporary file is needed, because no other process reads the folder before the folder gets its final name.
   AppendFile file(directory / "config.yaml");
@@ -70,7 +70,7 @@ void SweepDraft::add(const Job& job, const ResolvedConfig& config) {
 
 void SweepDraft::replace_lost(const Sweep& sweep) const {
   for (const Job& job : sweep.jobs) {
-    const fs::path directory = job_directory(sweep, job);
+    const fs::path directory = palpate::job_directory(sweep, job);
     if (is_there(directory / "config.yaml")) continue;
     refuse_link(directory.parent_path());
     make_inner_folder(directory);

@@ -22,6 +22,9 @@ class SweepDraft {
   /// Writes the config of a job.
   void add(const Job& job, const ResolvedConfig& config);
 
+  /// Returns the directory that a job has until the sweep is published. A job that is run there keeps its record.
+  std::filesystem::path job_directory(const Job& job) const { return folder_ / "jobs" / job.id; }
+
   /// Writes config.yaml and manifest.jsonl, and renames the folder to the directory of the sweep. Returns false if the
   /// sweep exists already. The existing sweep is not changed, except that job configs are written again if they were
   /// deleted. Throws Error.

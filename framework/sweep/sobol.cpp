@@ -44,6 +44,24 @@ std::int64_t read_samples(const Tree& described, const SourceLocation& place) {
 
 }  // namespace
 
+std::vector<std::vector<double>> sobol_points(std::size_t count, std::size_t dimensions, std::string_view purpose) {
+  // A digital shift combines all points with one random bit pattern per axis by XOR, as for the initial taps. The
+  // shifted points are still evenly spread, and the first point is no longer at the lower end of every range.
+  std::vector<std::uint64_t> shift;
+  Random random(0, purpose);
+  for (std::size_t k = 0; k < dimensions; ++k) shift.push_back(random.bits());
+  boost::random::sobol sequence(dimensions);
+  std::vector<std::uint64_t> bits(dimensions);  // the origin is the first point, which Boost omits
+  std::vector<std::vector<double>> out;
+  for (std::size_t i = 0; i < count; ++i) {
+    std::vector<double>& point = out.emplace_back();
+    for (std::size_t k = 0; k < dimensions; ++k)
+      point.push_back(static_cast<double>((bits[k] ^ shift[k]) >> 11) * 0x1.0p-53);
+    for (std::uint64_t& coordinate : bits) coordinate = sequence();
+  }
+  return out;
+}
+
 std::vector<SweepAxis> sobol_axes(const Tree& described, ValueCount& count) {
   if (!described.is_map()) {
     throw Error(described.place.text(), "sweep.sobol: expects samples and keys",
@@ -65,23 +83,13 @@ std::vector<SweepAxis> sobol_axes(const Tree& described, ValueCount& count) {
   count.add(keys->entries.size() * static_cast<std::size_t>(samples), keys->place, "sweep.sobol");
   std::vector<SweepAxis> axes;
   std::vector<ContinuousRange> ranges;
-  // A digital shift combines all points with one random bit pattern per axis by XOR, as for the initial taps. The
-  // shifted points are still evenly spread, and the first point is no longer at the lower end of every range.
-  std::vector<std::uint64_t> shift;
-  Random random(0, "sweep.sobol");
   for (const Tree::Entry& entry : keys->entries) {
     axes.push_back({entry.key, {}, entry.value});
     ranges.push_back(parse_range(entry));
-    shift.push_back(random.bits());
   }
-  boost::random::sobol sequence(axes.size());
-  std::vector<std::uint64_t> point(axes.size());  // the origin is the first point, which Boost omits
-  for (std::int64_t i = 0; i < samples; ++i) {
-    for (std::size_t k = 0; k < axes.size(); ++k) {
-      const double share = static_cast<double>((point[k] ^ shift[k]) >> 11) * 0x1.0p-53;
-      axes[k].values.push_back(number(shortened(ranges[k].at(share)), ranges[k].unit, axes[k].written));
-    }
-    for (std::uint64_t& coordinate : point) coordinate = sequence();
+  for (const std::vector<double>& point : sobol_points(static_cast<std::size_t>(samples), axes.size(), "sweep.sobol")) {
+    for (std::size_t k = 0; k < axes.size(); ++k)
+      axes[k].values.push_back(number(shortened(ranges[k].at(point[k])), ranges[k].unit, axes[k].written));
   }
   return axes;
 }

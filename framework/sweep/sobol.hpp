@@ -4,6 +4,8 @@
 
 #include "config/expand.hpp"
 
+#include <cstddef>
+#include <string_view>
 #include <vector>
 
 namespace palpate {
@@ -13,5 +15,9 @@ namespace palpate {
 /// point of a Sobol sequence. The digital shift of the sequence is fixed, so that all calls return the same points. A
 /// smaller sample is the beginning of a larger sample. Throws Error.
 std::vector<SweepAxis> sobol_axes(const Tree& described, ValueCount& count);
+
+/// Returns `count` points of a Sobol sequence, with coordinates from 0 (included) to 1 (excluded). `purpose` decides
+/// the digital shift of the sequence. `dimensions` is at most 3667.
+std::vector<std::vector<double>> sobol_points(std::size_t count, std::size_t dimensions, std::string_view purpose);
 
 }  // namespace palpate

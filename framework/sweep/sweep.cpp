@@ -25,6 +25,8 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr const char* kSweep = "sweep";  ///< field with the id of the sweep
+constexpr const char* kManifest = "manifest.jsonl";
+constexpr const char* kRound = "round";  ///< first field of the line of a round
 
 FieldList<JobLine> make_job_list() {
   FieldList<JobLine> list;
@@ -58,7 +60,80 @@ bool decides_jobs(const std::string& key) {
   return key != "name" && key != "log" && key != "expect" && key != "complete";
 }
 
+std::string job_line(const Sweep& sweep, const Job& job, const std::string& id) {
+  return to_json_line(job_list().row({sweep.keys, job, id})) + "\n";
+}
+
+/// Returns the line of a round. `before`: all lines of the manifest before it.
+std::string round_line(std::size_t number, const SweepRound& round, const std::string& before) {
+  Row row;
+  row.add(kRound, static_cast<std::int64_t>(number));
+  row.add("jobs", static_cast<std::int64_t>(round.jobs));
+  row.add("chain", hash_of(before));
+  row.fields.insert(row.fields.end(), round.decision.fields.begin(), round.decision.fields.end());
+  return to_json_line(row) + "\n";
+}
+
 bool is_id(const std::string& text) { return text.size() == kIdLength && begins_with_id(text); }
+
+/// The content of manifest.jsonl.
+struct SweepManifest {
+  Sweep sweep;
+  std::string id;         ///< id of the sweep, as the lines of the jobs have it
+  std::size_t bytes = 0;  ///< number of bytes up to the end of the last line that counts
+};
+
+/// Throws Error, with the line, unless the row is exactly that of its job. The id must be valid, because it is the name
+/// of a folder.
+void add_job(SweepManifest& manifest, const Row& row, const std::string& place) {
+  Sweep& sweep = manifest.sweep;
+  if (sweep.jobs.empty()) {
+    sweep.keys = texts_at(row, "key");
+    manifest.id = row.text(kSweep);
+  }
+  const Job job{static_cast<int>(sweep.jobs.size()), row.text("id"), texts_at(row, "value")};
+  if (!is_id(job.id) || job.values.size() != sweep.keys.size() || manifest.id.empty() ||
+      job_list().row({sweep.keys, job, manifest.id}).fields != row.fields)
+    throw Error(place, "is not a job of this sweep", "the file is damaged: put it back as it was");
+  sweep.jobs.push_back(job);
+}
+
+/// Throws Error, with the place, unless the line of this row is that of the next round after the lines `before`.
+void add_round(Sweep& sweep, const Row& row, const std::string& line, const std::string& before,
+               const std::string& place) {
+  SweepRound round{sweep.jobs.size(), row};
+  for (const char* const field : {kRound, "jobs", "chain"}) round.decision.erase(field);
+  if (round_line(sweep.rounds.size(), round, before) != line + "\n")
+    throw Error(place, "is not a round of this sweep, or lines before it were changed",
+                "the file is damaged: put it back as it was");
+  sweep.rounds.push_back(std::move(round));
+}
+
+SweepManifest read_sweep_manifest(const fs::path& directory) {
+  const fs::path file = directory / kManifest;
+  const std::string text = read_file(file);
+  SweepManifest out{{directory, {}, {}}, {}};
+  JsonLinesReader reader(file);
+  std::size_t begin = 0;
+  for (std::size_t end = text.find('\n'); end != std::string::npos; end = text.find('\n', begin)) {
+    const std::string line = text.substr(begin, end - begin);
+    const Row row = reader.read(line);
+    const bool is_round = !row.fields.empty() && row.fields.front().first == kRound;
+    if (is_round) {
+      add_round(out.sweep, row, line, text.substr(0, begin), reader.place());
+    } else {
+      add_job(out, row, reader.place());
+    }
+    begin = end + 1;
+    if (is_round || out.sweep.rounds.empty()) out.bytes = begin;
+  }
+  // A manifest without rounds is complete before the first job starts, so an incomplete line means damage.
+  if (out.sweep.rounds.empty() && out.bytes != text.size())
+    throw Error(file.string(), "ends in the middle of a line", "the file is damaged");
+  if (!out.sweep.rounds.empty()) out.sweep.jobs.resize(out.sweep.rounds.back().jobs);
+  if (out.sweep.jobs.empty()) throw Error(file.string(), "lists no jobs", "the file is damaged");
+  return out;
+}
 
 }  // namespace
 
@@ -69,7 +144,15 @@ const FieldList<JobLine>& job_list() {
 
 std::string manifest_text(const Sweep& sweep, const std::string& id) {
   std::string text;
-  for (const Job& job : sweep.jobs) text += to_json_line(job_list().row({sweep.keys, job, id})) + "\n";
+  std::size_t next = 0;
+  const auto add_jobs = [&](std::size_t end) {
+    for (; next < end; ++next) text += job_line(sweep, sweep.jobs[next], id);
+  };
+  for (std::size_t round = 0; round < sweep.rounds.size(); ++round) {
+    add_jobs(sweep.rounds[round].jobs);
+    text += round_line(round, sweep.rounds[round], text);
+  }
+  add_jobs(sweep.jobs.size());
   return text;
 }
 
@@ -85,7 +168,8 @@ std::string sweep_id(const Tree& config, const Sweep& sweep) {
   for (Tree::Entry& entry : parsed.entries) {
     if (decides_jobs(entry.key)) identity.entries.push_back(std::move(entry));
   }
-  return hash_of(identity.canonical() + manifest_text(sweep, "")).substr(0, kIdLength);
+  // Later rounds add jobs, so the jobs do not identify a sweep with rounds.
+  return hash_of(identity.canonical() + (sweep.rounds.empty() ? manifest_text(sweep, "") : "")).substr(0, kIdLength);
 }
 
 std::vector<std::size_t> all_jobs(const Sweep& sweep) {
@@ -113,30 +197,26 @@ std::string sweep_name(const Sweep& sweep) {
 Sweep read_sweep(const fs::path& directory) {
   if (!is_sweep(directory))
     throw Error(directory.string(), "is not the directory of a sweep", "it has no manifest.jsonl");
-  Sweep sweep{directory, {}, {}};
-  const fs::path file = directory / "manifest.jsonl";
-  std::string id;
-  const std::uintmax_t bytes = read_json_lines(file, [&](const Row& row) {
-    if (sweep.jobs.empty()) {
-      sweep.keys = texts_at(row, "key");
-      id = row.text(kSweep);
-    }
-    const Job job{static_cast<int>(sweep.jobs.size()), row.text("id"), texts_at(row, "value")};
-    // The line must be exactly the row of its job. The id must be valid, because it is the name of a folder.
-    if (!is_id(job.id) || job.values.size() != sweep.keys.size() || id.empty() ||
-        job_list().row({sweep.keys, job, id}).fields != row.fields)
-      throw Error(fmt::format("{}:{}", file.string(), job.index + 1), "is not a job of this sweep",
-                  "the file is damaged: put it back as it was");
-    sweep.jobs.push_back(job);
-  });
-  // The manifest is complete before the first job starts, so an incomplete line means damage.
-  if (bytes != fs::file_size(file)) throw Error(file.string(), "ends in the middle of a line", "the file is damaged");
-  if (sweep.jobs.empty()) throw Error(file.string(), "lists no jobs", "the file is damaged");
-  if (sweep_id(read_run_config(directory), sweep) != id) {
+  SweepManifest manifest = read_sweep_manifest(directory);
+  Sweep& sweep = manifest.sweep;
+  if (sweep_id(read_run_config(directory), sweep) != manifest.id) {
     throw Error(directory.string(), "config.yaml or manifest.jsonl was changed after this sweep started",
                 "restore the old file, or run the changed config with 'palpate sweep'");
   }
-  return sweep;
+  return std::move(sweep);
+}
+
+void append_round(const Sweep& sweep, const std::vector<Job>& jobs, const Row& decision) {
+  const fs::path file = sweep.directory / kManifest;
+  const SweepManifest manifest = read_sweep_manifest(sweep.directory);
+  std::string text = read_file(file).substr(0, manifest.bytes);
+  const std::size_t before = text.size();
+  for (const Job& job : jobs) text += job_line(sweep, job, manifest.id);
+  text += round_line(sweep.rounds.size(), {sweep.jobs.size() + jobs.size(), decision}, text);
+  AppendFile manifest_file(file);
+  manifest_file.cut(before);  // removes jobs without the line of their round
+  manifest_file.append(text.substr(before), true);
+  manifest_file.flush();
 }
 
 std::vector<Row> write_results(const Sweep& sweep) {

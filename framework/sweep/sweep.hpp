@@ -30,24 +30,38 @@ struct JobLine {
 };
 const FieldList<JobLine>& job_list();
 
+/// A round of a tuned sweep: jobs that were added together, after all jobs of the earlier rounds had ended.
+struct SweepRound {
+  std::size_t jobs = 0;  ///< number of jobs of the sweep, those of this round included
+  Row decision;          ///< further fields of the round's line in manifest.jsonl: see RaceState
+};
+
 /// The directory of a sweep: config.yaml, manifest.jsonl, jobs/<id>/, results.csv.
 struct Sweep {
   std::filesystem::path directory;
   std::vector<std::string> keys;
   std::vector<Job> jobs;
-  std::string name = {};  ///< only in a PooledSweep: see sweep_name()
+  std::string name = {};                ///< only in a PooledSweep: see sweep_name()
+  std::vector<SweepRound> rounds = {};  ///< only of a sweep that `palpate tune` made; else empty
 };
 
-/// Returns the name of a sweep's directory: a hash of its resolved config, its keys and its jobs.
+/// Returns the name of a sweep's directory: a hash of its resolved config and, unless it has rounds, of its keys and
+/// its jobs.
 std::string sweep_id(const Tree& config, const Sweep& sweep);
 
-/// Returns the text of manifest.jsonl: one line per job. Each line contains the id of the sweep, by which read_sweep()
-/// detects changed files.
+/// Returns the text of manifest.jsonl: one line per job, and one line after the jobs of each round. Each line of a job
+/// contains the id of the sweep, and each line of a round a hash of all lines before it. read_sweep() detects changed
+/// files by them.
 std::string manifest_text(const Sweep& sweep, const std::string& id);
 
 /// Reads the manifest of a sweep. Throws Error if it is missing or damaged, or if config or manifest have changed since
-/// the start of the sweep.
+/// the start of the sweep. In a sweep with rounds, jobs without the line of their round do not count, because the
+/// process that added them was killed.
 Sweep read_sweep(const std::filesystem::path& directory);
+
+/// Appends a round to the manifest of a sweep with rounds. The configs of `jobs` must exist. The lines are on the disk
+/// when the function returns. The caller must hold the lock of the sweep and have read `sweep` under it. Throws Error.
+void append_round(const Sweep& sweep, const std::vector<Job>& jobs, const Row& decision);
 
 /// Returns the name of the sweep. If `name` is a swept key with the same value in all jobs, as after `name=X` on the
 /// command line, returns this value. Otherwise returns `name` of the sweep's config.

@@ -266,7 +266,7 @@ TEST_F(Slurm, WhatCannotBeSubmittedIsSaidInOneLineAndNothingIsLeftInTheQueue) {
     return ended.err;
   };
   EXPECT_THAT(refused({"--partition", "nope"}), StartsWith("sbatch: invalid partition specified: nope; "));
-  EXPECT_THAT(refused({"--time", "soon"}), StartsWith("sbatch: "));
+  EXPECT_THAT(refused({"--task-time", "soon"}), StartsWith("sbatch: "));
   EXPECT_THAT(refused({"--sbatch=--no-such-option"}), HasSubstr("--no-such-option"));
   EXPECT_THAT(refused({"--sbatch=--mem"}), StartsWith("sbatch: "));
   EXPECT_TRUE(lab.tasks().empty());

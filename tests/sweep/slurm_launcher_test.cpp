@@ -85,7 +85,7 @@ TEST(SlurmSbatchWords, AreOptionsThatPalpateDoesNotSayItself) {
     EXPECT_THROW(check_sbatch_words({"--mem=4G", word}), Error) << word;
   }
   EXPECT_EQ(test::error_of([] { check_sbatch_words({"--time=5"}); }),
-            "command line: --sbatch: --time cannot be set with --sbatch, use palpate's own option of this name");
+            "command line: --sbatch: --time cannot be set with --sbatch, use palpate's own option --task-time");
 }
 
 /// Runs the script as Slurm does and returns the words that its program received.

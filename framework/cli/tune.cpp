@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: MIT
+#include "cli/tune.hpp"
+
+#include "cli/display.hpp"
+#include "cli/interrupt.hpp"
+#include "cli/output.hpp"
+#include "cli/resume.hpp"
+#include "cli/sweep_display.hpp"
+#include "cli/sweep_execution.hpp"
+#include "config/yaml.hpp"
+#include "launch/job.hpp"
+#include "launch/parallel_children.hpp"
+#include "record/files.hpp"
+#include "report/words/words.hpp"
+#include "sweep/draft.hpp"
+#include "tune/race_report.hpp"
+#include "tune/tuner.hpp"
+
+#include <palpate/error.hpp>
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <filesystem>
+#include <numeric>
+#include <optional>
+#include <utility>
+
+#include <unistd.h>
+
+namespace palpate::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Assumed number of jobs of a race whose budget is a time, if no run can be timed before the race.
+constexpr std::size_t kJobsOfTime = 250;
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
+
+TuneWords words_of(const TuneArguments& arguments) {
+  TuneWords out{arguments.keys, arguments.scenes, {}};
+  const auto set = [&](const char* name, const std::optional<std::string>& text) {
+    if (text) out.settings.emplace_back(name, *text);
+  };
+  const auto count = [](const std::optional<int>& number) {
+    return number ? std::optional(std::to_string(*number)) : std::nullopt;
+  };
+  set("metric", arguments.metric);
+  set("jobs", count(arguments.jobs));
+  set("time", arguments.time);
+  set("within", arguments.within);
+  set("fresh", count(arguments.fresh));
+  set("where", arguments.where ? std::optional("'" + *arguments.where + "'") : std::nullopt);
+  return out;
+}
+
+/// Makes the first runs of the config as it stands, until one has a value of the metric. The runs remain in the draft.
+/// Returns the wall time per run. Throws Error if no run has a value.
+double try_metric(const CommandEnvironment& program, const TunePlanner& planner, SweepDraft& draft) {
+  const TuneDescription& description = planner.description();
+  const PlannedSetting own{SettingValues(description.keys.size()), 0, kFirstSeeds};
+  const std::vector<Job> jobs =
+      planner.plan({own}, 0, false, [&](const Job& job, const ResolvedConfig& config) { draft.add(job, config); });
+  const Clock::time_point begin = Clock::now();
+  std::string reason;
+  for (std::size_t seed = 0; seed < jobs.size(); ++seed) {
+    const fs::path directory = draft.job_directory(jobs[seed]);
+    if (!in_children(
+            1, 1, [&](std::size_t) { run_job(program, directory, {}); }, program.interrupted, nullptr))
+      return 0.0;
+    const std::optional<Row> summary = read_outcome(directory);
+    if (summary && summary->number(description.metric)) return seconds_since(begin) / static_cast<double>(seed + 1);
+    if (summary && summary->text("status") != "done") reason = summary->text("stop_reason");
+  }
+  const RecordField* field = find_summary_field(description.metric);
+  if (reason.empty() && field != nullptr) reason = field->when_null;
+  throw Error(description.written.find("metric")->place.text(),
+              fmt::format("tune: the first {} runs of the config have no value of '{}'{}", jobs.size(),
+                          description.metric, reason.empty() ? "" : ": " + reason),
+              "tune another metric, or change the config");
+}
+
+/// Returns the number of jobs of the whole race, from `jobs` that took `seconds`.
+std::size_t budget_of(const TuneDescription& description, std::size_t jobs, double seconds) {
+  if (description.jobs) return *description.jobs;
+  return static_cast<std::size_t>(static_cast<double>(jobs) * *description.seconds / std::max(seconds, 1e-3));
+}
+
+/// Prints the state of the race on stderr: on a terminal in place, elsewhere once per tenth of the budget.
+class RaceLine {
+ public:
+  explicit RaceLine(bool quiet) : quiet_(quiet), terminal_(::isatty(STDERR_FILENO) != 0) {}
+  void show(const RaceRecord& race, std::size_t budget) {
+    const std::size_t tenth = 10 * race.race_jobs / std::max<std::size_t>(budget, 1);
+    if (quiet_ || (!terminal_ && tenth == tenth_ && !race.has_ended())) return;
+    tenth_ = tenth;
+    const std::string line = fmt::format("{} of {} runs, {} of {} settings in the race, on {} seeds", race.race_jobs,
+                                         budget, race.state.racing.size(), race.settings.size(), race.state.seeds);
+    print_message((terminal_ ? std::string(kClearLine) : "") + line + (terminal_ && !race.has_ended() ? "" : "\n"));
+  }
+
+ private:
+  bool quiet_;
+  bool terminal_;
+  std::size_t tenth_ = 11;
+};
+
+/// Prints the results, and writes results.csv, race.csv and best.yaml.
+void print_race(const RaceResults& results) {
+  const fs::path& directory = results.sweep.directory;
+  write_results(results.sweep);
+  write_file(directory / "race.csv", to_csv(race_rows(results)));
+  print_text(race_text(results));
+  if (!results.race.has_ended()) return;
+  write_file(directory / "best.yaml", best_config(results));
+  print_out("best setting: {}\n", (directory / "best.yaml").string());
+}
+
+/// Runs the rounds of a race until it ends. Returns the exit status.
+int run_race(CommandEnvironment& program, const fs::path& directory, const LaunchArguments& launch,
+             const ResumeOptions& options) {
+  const Tree config = read_run_config(directory);
+  const TuneDescription description(config.find("tune"), {});
+  const TunePlanner planner(program.composer, program.host, directory / "config.yaml", description);
+  std::vector<std::optional<double>> values;
+  RaceLine line(launch.quiet);
+  LaunchArguments silent = launch;
+  silent.quiet = true;  // RaceLine shows the progress
+  bool has_begun = false;
+  double before = read_race(read_sweep(directory), description).seconds;
+  const Clock::time_point begin = Clock::now();
+  for (;;) {
+    const Sweep sweep = read_sweep(directory);
+    const RaceRecord race = read_race(sweep, description);
+    const double seconds = before + seconds_since(begin);
+    const std::size_t budget = budget_of(description, race.race_jobs, seconds);
+    line.show(race, budget);
+    SweepExecution execution{program, sweep, options, silent, {}, false};
+    std::vector<std::size_t> jobs = all_jobs(sweep);
+    jobs.erase(jobs.begin(), jobs.begin() + static_cast<std::ptrdiff_t>(values.size()));
+    JobStates begun = read_job_states(sweep, jobs);
+    if (!has_begun) {
+      check_builds(execution, jobs_not_done(begun));
+      begin_execution(execution);
+    }
+    if (options.retry_failed && !has_begun) reopen_failed(begun);
+    has_begun = true;
+    const LaunchOutcome launched = launch_open(execution, begun);
+    if (launched == LaunchOutcome::submitted) return kDone;
+    const JobStates end = read_job_states(sweep, jobs, JobCheck::nothing);
+    if (program.interrupted->load() || !end.open.empty() || launched != LaunchOutcome::ended) {
+      print_failures(sweep, end.failures);
+      print_out("resume with: palpate resume {}\n", directory.string());
+      return program.interrupted->load() ? kInterrupted : kFailed;
+    }
+    if (add_round(planner, directory, budget, seconds, values)) continue;
+    print_race({sweep, description, race, values});
+    set_record_line("record: " + directory.string());
+    print_out("record: {}\n", directory.string());
+    return kDone;
+  }
+}
+
+}  // namespace
+
+int tune(CommandEnvironment& program, const TuneArguments& arguments) {
+  check_launch(arguments.launch);
+  const LauncherType& launcher = checked_launcher(arguments.launch);
+  if (launcher.check_installed != nullptr) launcher.check_installed();
+  const Tree composed = program.composer.compose(program.composer.found(arguments.config), {});
+  const TuneDescription description(composed.find("tune"), words_of(arguments));
+  const TunePlanner planner(program.composer, program.host, arguments.config, description);
+  check_taps_are_own(planner.own(), "backend");
+  const fs::path directory = race_directory(planner, arguments.runs);
+  if (is_sweep(directory)) {
+    if (!arguments.launch.quiet) print_message(fmt::format("{} exists: the race goes on\n", directory.string()));
+    return run_race(program, directory, arguments.launch, {});
+  }
+  listen_for_interrupts();
+  std::optional<SweepDraft> draft(arguments.runs);
+  double seconds = 0.0;
+  // The taps of a robot cannot be repeated, so its runs belong to the race only.
+  if (!program.host.one_at_a_time(planner.own().notes.plugins)) seconds = try_metric(program, planner, *draft);
+  if (program.interrupted->load()) return kInterrupted;
+  const int workers = arguments.launch.workers.value_or(cores());
+  const std::size_t budget = seconds > 0.0 ? budget_of(description, static_cast<std::size_t>(workers), seconds)
+                                           : description.jobs.value_or(kJobsOfTime);
+  const SweepPlan plan =
+      plan_first_round(planner, budget, arguments.runs, [&](const Job& job, const ResolvedConfig& config) {
+        if (!is_there(draft->job_directory(job))) draft->add(job, config);
+      });
+  draft->publish(plan);
+  draft.reset();  // releases the lock of the sweep
+  if (!arguments.launch.quiet)
+    print_message(fmt::format("{} settings on {} seeds in {}\n", plan.sweep.jobs.size() / kFirstSeeds, kFirstSeeds,
+                              directory.string()));
+  return run_race(program, directory, arguments.launch, {});
+}
+
+int resume_race(CommandEnvironment& program, const ResumeArguments& arguments) {
+  checked_launcher(arguments.launch);
+  if (arguments.step)
+    throw Error("command line", "--step: " + arguments.directory + " is a race of many runs", "leave it out");
+  return run_race(program, arguments.directory, arguments.launch, arguments.options);
+}
+
+}  // namespace palpate::cli

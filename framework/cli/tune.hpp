@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: MIT
+// Arguments of `palpate tune`, and the race that `palpate resume` continues.
+#pragma once
+
+#include "cli/command_line.hpp"
+#include "cli/launch_options.hpp"
+
+namespace palpate::cli {
+
+struct ResumeArguments;
+
+struct TuneArguments {
+  std::string config;
+  std::vector<std::string> keys;
+  std::optional<std::string> metric, time, within, where;
+  std::optional<int> jobs, fresh;
+  std::vector<std::string> scenes;
+  std::string runs = "runs";
+  LaunchArguments launch;
+};
+PALPATE_WHOLE int tune(CommandEnvironment& program, const TuneArguments& arguments);
+
+/// Continues the race in a directory for which is_race() is true. Returns the exit status.
+PALPATE_WHOLE int resume_race(CommandEnvironment& program, const ResumeArguments& arguments);
+
+inline void add_tune(CommandLine& line) {
+  auto [command, tune_arguments] =
+      line.add<TuneArguments>("tune", "Find the best setting of some keys with few runs", tune, kNeedsEverything);
+  command.argument("CONFIG", tune_arguments.config, "CONFIG",
+                   "YAML file of the experiment, optionally with a 'tune:' block", {required()});
+  command.argument("KEY", tune_arguments.keys, "KEY=RANGE",
+                   "key and the values among which the best one is searched, for example "
+                   "kernel.length_scale=log_uniform(5mm,10cm) or acquisition=weighted,random. A single value, such as "
+                   "seed=1000, applies to all runs");
+  command.argument("--metric", tune_arguments.metric, "FIELD",
+                   "field of the summary whose mean over the seeds decides, for example rmse_m");
+  const Argument jobs = command.argument("--jobs", tune_arguments.jobs, "N",
+                                         "budget: number of runs. The runs of --fresh are not counted", {at_least(1)});
+  command.argument("--time", tune_arguments.time, "TIME", "budget in wall time instead, for example 10min",
+                   {not_with(jobs)});
+  command.argument("--within", tune_arguments.within, "DIFFERENCE",
+                   "end when all settings left differ from the best one by at most this, for example 0.5mm");
+  command.argument("--fresh", tune_arguments.fresh, "N",
+                   "number of further seeds on which the best setting is compared with the config as it stands; "
+                   "default: 100");
+  command.argument("--over", tune_arguments.scenes, "SCENES",
+                   "scenes that alternate from seed to seed, for example block,ring; default: the scene of the config",
+                   {comma_separated()});
+  command.argument("--where", tune_arguments.where, "CONDITION",
+                   "try only settings that satisfy this condition, for example \"kernel.length_scale > 1cm\"");
+  command.argument("--runs", tune_arguments.runs, "FOLDER", kRunsHelp, {with_default()});
+  add_launch(command, tune_arguments.launch);
+  command.examples(
+      {"palpate tune configs/paper/object_i.yaml \"kernel.length_scale=log_uniform(5mm,10cm)\" "
+       "acquisition=weighted,uncertainty --metric rmse_m --jobs 400",
+       "palpate tune configs/default.yaml belief.height.noise=2mm,4mm,6mm --metric rmse_m --jobs 200 "
+       "--over block,ring"});
+}
+
+}  // namespace palpate::cli

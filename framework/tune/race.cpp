@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: MIT
+#include "tune/race.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace palpate {
+namespace {
+
+constexpr double kAlphaOfSearch = 0.05;
+constexpr double kAlphaOfLists = 0.01;   ///< no setting comes back, so a wrong elimination costs more
+constexpr double kLastShare = 0.12;      ///< share of the budget for the last stage
+constexpr double kJobsPerSetting = 5.5;  ///< expected number of jobs of a setting that joins: four seeds, and some more
+constexpr double kFirstSpread = 0.25;
+constexpr double kShrinkage = 0.8;
+constexpr double kInitialShare = 12.5;  ///< jobs of the budget per initial setting
+constexpr std::size_t kMostInitial = 40;
+
+bool is_last(const RaceRules& rules, const RaceState& state) { return !rules.is_search || state.stage == kLastStage; }
+
+/// Returns the results of the racing settings on the first `state.seeds` seeds.
+RaceTable racing_table(const RaceState& state, const RaceTable& results) {
+  RaceTable out;
+  for (const std::size_t setting : state.racing) {
+    const auto begin = results[setting].begin();
+    out.emplace_back(begin, begin + static_cast<std::ptrdiff_t>(state.seeds));
+  }
+  return out;
+}
+
+/// Returns the racing settings in the order of their means.
+std::vector<std::size_t> ranked_settings(const RaceState& state, const RaceTable& results) {
+  std::vector<std::size_t> out;
+  for (const std::size_t row : ranked(racing_table(state, results))) out.push_back(state.racing[row]);
+  return out;
+}
+
+/// Removes the losers from the race and adds them to the decision.
+void drop_losers(const RaceRules& rules, const RaceTable& results, RaceDecision& decision) {
+  RaceState& state = decision.state;
+  const std::size_t keep = is_last(rules, state) ? 1 : kElites;
+  const double alpha = rules.is_search ? kAlphaOfSearch : kAlphaOfLists;
+  for (Loser one : find_losers(racing_table(state, results), alpha, keep)) {
+    one.row = state.racing[one.row];
+    decision.losers.push_back(one);
+  }
+  for (const Loser& one : decision.losers) {
+    state.racing.erase(std::remove(state.racing.begin(), state.racing.end(), one.row), state.racing.end());
+  }
+}
+
+/// Begins the next stage of a search: the best settings remain, and others may join.
+void begin_stage(const RaceTable& results, std::size_t budget, std::size_t jobs, RaceDecision& decision) {
+  RaceState& state = decision.state;
+  std::vector<std::size_t> elites = ranked_settings(state, results);
+  elites.resize(std::min(elites.size(), kElites));
+  const double left =
+      static_cast<double>(budget) - static_cast<double>(jobs) - kLastShare * static_cast<double>(budget);
+  ++state.stage;
+  const double share = state.stage < kLastStage ? left / static_cast<double>(kLastStage - state.stage) : 0.0;
+  const auto joining = static_cast<std::size_t>(std::max(0.0, std::floor(share / kJobsPerSetting)));
+  state.racing = elites;
+  std::sort(state.racing.begin(), state.racing.end());
+  if (joining == 0) {
+    state.stage = kLastStage;
+    state.stage_end = budget;
+    return;
+  }
+  state.stage_end = jobs + static_cast<std::size_t>(share);
+  state.seeds = kFirstSeeds;
+  decision.new_settings = joining;
+  decision.elites = std::move(elites);
+  decision.spread = kFirstSpread * std::pow(kShrinkage, static_cast<double>(state.stage - 1));
+}
+
+}  // namespace
+
+std::size_t initial_settings(std::size_t budget) {
+  return std::clamp<std::size_t>(static_cast<std::size_t>(static_cast<double>(budget) / kInitialShare), kElites + 1,
+                                 kMostInitial);
+}
+
+std::size_t first_stage_end(const RaceRules& rules, std::size_t budget) {
+  return rules.is_search ? budget / 2 : budget;
+}
+
+RaceDecision decide(const RaceRules& rules, const RaceState& state, const RaceTable& results, std::size_t budget,
+                    std::size_t jobs) {
+  RaceDecision out;
+  out.state = state;
+  const auto end = [&](const char* reason) {
+    out.end = reason;
+    out.winner = ranked_settings(out.state, results).front();
+    return out;
+  };
+  for (;;) {
+    drop_losers(rules, results, out);
+    if (out.state.racing.size() == 1 && is_last(rules, out.state)) return end("one setting is left");
+    if (largest_disadvantage(racing_table(out.state, results)) <= rules.within)
+      return end(rules.within > 0.0 ? "all settings left are within the given difference of the best one"
+                                    : "all settings left have the same results");
+    // Settings of earlier stages already have results on some of the next seeds.
+    const auto lacking = static_cast<std::size_t>(
+        std::count_if(out.state.racing.begin(), out.state.racing.end(),
+                      [&](std::size_t setting) { return results[setting].size() <= out.state.seeds; }));
+    if (jobs + lacking <= out.state.stage_end) {
+      ++out.state.seeds;
+      if (lacking > 0) return out;
+      continue;
+    }
+    if (is_last(rules, out.state)) return end("the budget is used");
+    begin_stage(results, budget, jobs, out);
+    if (out.new_settings > 0) return out;
+    // In the last stage, the seeds that all settings have in common count.
+    out.state.seeds = results[out.state.racing.front()].size();
+    for (const std::size_t setting : out.state.racing)
+      out.state.seeds = std::min(out.state.seeds, results[setting].size());
+  }
+}
+
+}  // namespace palpate

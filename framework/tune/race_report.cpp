@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: MIT
+#include "tune/race_report.hpp"
+
+#include "analysis/bootstrap.hpp"
+#include "analysis/groups.hpp"
+#include "analysis/mean_output.hpp"
+#include "analysis/table.hpp"
+#include "config/yaml.hpp"
+#include "record/fields.hpp"
+#include "record/recorded_run.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <boost/algorithm/string/replace.hpp>
+
+#include <algorithm>
+#include <numeric>
+#include <tuple>
+
+namespace palpate {
+namespace {
+
+constexpr std::size_t kMostRows = 10;
+
+/// Returns the mean of a setting over the seeds on which it ran in the race, as the metric has it. Returns nullopt if
+/// no run has a value.
+std::optional<double> mean_of_setting(const RaceResults& results, std::size_t setting) {
+  std::vector<double> values;
+  for (const std::size_t job : results.race.settings[setting].jobs) {
+    if (results.values[job]) values.push_back(*results.values[job]);
+  }
+  if (values.empty()) return std::nullopt;
+  return results.description.more_is_better ? -mean_of(values) : mean_of(values);
+}
+
+const Loser* loss_of(const RaceRecord& race, std::size_t setting) {
+  for (const Loser& one : race.losers) {
+    if (one.row == setting) return &one;
+  }
+  return nullptr;
+}
+
+/// Returns all settings: the winner, the others in the race by their means, then those that lost, the last one first.
+std::vector<std::size_t> listed_settings(const RaceResults& results) {
+  const RaceRecord& race = results.race;
+  const RaceTable table = race_table(race, results.values);
+  const std::vector<double> means = means_of(table);
+  std::vector<std::size_t> out(race.settings.size());
+  std::iota(out.begin(), out.end(), std::size_t{0});
+  const auto key = [&](std::size_t setting) {
+    const bool wins = race.has_ended() && setting == race.winner;
+    const bool races = std::count(race.state.racing.begin(), race.state.racing.end(), setting) > 0;
+    // Settings with fewer seeds lost earlier.
+    const std::size_t most = results.race.race_jobs;
+    return std::make_tuple(!wins, !races, races ? std::size_t{0} : most - table[setting].size(), means[setting]);
+  };
+  std::stable_sort(out.begin(), out.end(), [&](std::size_t a, std::size_t b) { return key(a) < key(b); });
+  return out;
+}
+
+std::string settings_words(const RaceResults& results, std::size_t setting) {
+  std::vector<std::string> out;
+  const std::vector<std::string>& values = results.race.settings[setting].values;
+  for (std::size_t key = 0; key < values.size(); ++key) {
+    if (!values[key].empty()) out.push_back(fmt::format("{}={}", results.description.keys[key].key, values[key]));
+  }
+  return fmt::format("{}", fmt::join(out, " "));
+}
+
+DisplayScale scale_of(const RaceResults& results) {
+  std::vector<double> means;
+  for (std::size_t setting = 0; setting < results.race.settings.size(); ++setting) {
+    if (const auto mean = mean_of_setting(results, setting)) means.push_back(*mean);
+  }
+  return readable_scale(unit_of_column(results.description.metric), means);
+}
+
+/// Returns the sentence about the fresh seeds, or the reason why there are none.
+std::string fresh_words(const RaceResults& results) {
+  if (results.race.winner == 0) return "the config as it stands is the best setting";
+  const MeanEstimate gain = fresh_gain(results);
+  if (gain.count == 0) return "no fresh seeds were run";
+  const DisplayScale scale = scale_of(results);
+  std::string words = fmt::format("gain over the config as it stands, on {} that had no part in the choice: {}",
+                                  units_words(gain.clusters, true), scale.with_unit(scale.estimate(gain)));
+  if (gain.interval && gain.interval->low <= 0.0) words += "; the interval contains 0, so the gain is not certain";
+  return words;
+}
+
+}  // namespace
+
+MeanEstimate fresh_gain(const RaceResults& results) {
+  const RaceRecord& race = results.race;
+  Clusters gains;
+  for (std::size_t i = 0; i < std::min(race.fresh_of_own.size(), race.fresh_of_winner.size()); ++i) {
+    const auto& own = results.values[race.fresh_of_own[i]];
+    const auto& winner = results.values[race.fresh_of_winner[i]];
+    if (own && winner) gains.push_back({*own - *winner});
+  }
+  return gains.empty() ? MeanEstimate{} : mean_of_sample(gains);
+}
+
+std::vector<Row> race_rows(const RaceResults& results) {
+  std::vector<Row> out;
+  for (std::size_t setting = 0; setting < results.race.settings.size(); ++setting) {
+    const RacedSetting& one = results.race.settings[setting];
+    Row& row = out.emplace_back();
+    row.add("setting", static_cast<std::int64_t>(setting));
+    for (std::size_t key = 0; key < one.values.size(); ++key)
+      row.add(results.description.keys[key].key, one.values[key]);
+    row.add("seeds", static_cast<std::int64_t>(one.jobs.size()));
+    row.add(results.description.metric, mean_of_setting(results, setting));
+    const Loser* loss = loss_of(results.race, setting);
+    row.add("lost_after_seeds", loss != nullptr ? std::optional(static_cast<std::int64_t>(loss->seeds)) : std::nullopt);
+    row.add("difference", loss != nullptr ? std::optional(loss->difference) : std::nullopt);
+    row.add("p", loss != nullptr ? std::optional(loss->p) : std::nullopt);
+  }
+  return out;
+}
+
+std::string race_text(const RaceResults& results) {
+  const RaceRecord& race = results.race;
+  const DisplayScale scale = scale_of(results);
+  Table table;
+  const std::vector<std::size_t> listed = listed_settings(results);
+  for (std::size_t i = 0; i < listed.size(); ++i) {
+    if (i >= kMostRows && listed[i] != 0) continue;
+    const RacedSetting& one = race.settings[listed[i]];
+    const Loser* loss = loss_of(race, listed[i]);
+    table.add_row();
+    const std::vector<std::string> values = shown_values(one.values);
+    for (std::size_t key = 0; key < values.size(); ++key)
+      table.show(results.description.keys[key].key, values[key], Table::Kind::text);
+    table.show("seeds", std::to_string(one.jobs.size()));
+    table.show(scale.title(results.description.metric), scale.number(mean_of_setting(results, listed[i])));
+    std::string remark = listed[i] == 0 ? "config as it stands" : "";
+    if (race.has_ended() && listed[i] == race.winner) remark += remark.empty() ? "best" : ", best";
+    if (loss != nullptr)
+      remark += fmt::format("{}lost after {} seeds: {} worse, p {:.2g}", remark.empty() ? "" : ", ", loss->seeds,
+                            scale.quantity(loss->difference), loss->p);
+    table.show("", remark, Table::Kind::text);
+  }
+  std::string out = table.text();
+  if (listed.size() > kMostRows) out += fmt::format("{} settings in all: race.csv\n", listed.size());
+  if (!race.has_ended())
+    return out + fmt::format("{} runs so far, {} settings are in the race\n", race.race_jobs, race.state.racing.size());
+  out += fmt::format("{} runs; the race ended because {}\n", race.race_jobs, race.end);
+  return out + fresh_words(results) + "\n";
+}
+
+std::string best_config(const RaceResults& results) {
+  const RaceRecord& race = results.race;
+  const Job& first = results.sweep.jobs[race.settings[race.winner].jobs.front()];
+  Tree config = read_run_config(job_directory(results.sweep, first));
+  config.erase("expect");
+  // With a new name, the run gets a folder runs/NAME of its own.
+  Tree& name = config.at("name");
+  name = Tree::scalar(name.text + "_best", true);
+  std::string comment =
+      fmt::format("Best of {} settings: {}\n", race.settings.size(), settings_words(results, race.winner));
+  for (const TunedKey& one : results.description.keys)
+    comment += fmt::format("tried: {}={}\n", one.key, value_text(one.written));
+  comment += fmt::format("metric: {}; {} runs; {}\n{}", results.description.metric, race.race_jobs, race.end,
+                         fresh_words(results));
+  return "# " + boost::replace_all_copy(comment, "\n", "\n# ") + "\n" + to_yaml(config);
+}
+
+}  // namespace palpate

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: MIT
+// Results of a race: the table for the terminal, the rows of race.csv, the gain on fresh seeds, and best.yaml.
+#pragma once
+
+#include "analysis/statistics.hpp"
+#include "record/row.hpp"
+#include "tune/tuner.hpp"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace palpate {
+
+/// A race and the results of all its jobs (read_results()).
+struct RaceResults {
+  const Sweep& sweep;
+  const TuneDescription& description;
+  const RaceRecord& race;
+  const std::vector<std::optional<double>>& values;
+};
+
+/// Returns the gain of the winner compared with the config as it stands: the mean difference over the fresh seeds on
+/// which both have a value, above 0 if the winner is better. Without values, MeanEstimate::count is 0.
+MeanEstimate fresh_gain(const RaceResults& results);
+
+/// Returns one row per setting: number, values of the tuned keys, number of seeds, mean, and for a dropped setting the
+/// number of seeds after which it lost, its difference to the best one, and p. In SI units.
+std::vector<Row> race_rows(const RaceResults& results);
+
+/// Returns the best settings in readable units, the config as it stands, the reason of the end, and the gain.
+std::string race_text(const RaceResults& results);
+
+/// Returns the config of the winner as YAML, with the course of the race as a comment.
+std::string best_config(const RaceResults& results);
+
+}  // namespace palpate

@@ -1,0 +1,360 @@
+// SPDX-License-Identifier: MIT
+#include "tune/tuner.hpp"
+
+#include "analysis/column.hpp"
+#include "config/yaml.hpp"
+#include "record/files.hpp"
+#include "record/json.hpp"
+#include "sweep/read_jobs.hpp"
+
+#include <palpate/error.hpp>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+#include <utility>
+
+namespace palpate {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+// Fields of a round's line in manifest.jsonl.
+constexpr const char* kStage = "stage";
+constexpr const char* kStageEnd = "stage_end";
+constexpr const char* kSeeds = "seeds";
+constexpr const char* kRacing = "racing";
+constexpr const char* kDropped = "dropped";
+constexpr const char* kSeconds = "seconds";
+constexpr const char* kEnd = "end";
+constexpr const char* kWinner = "winner";
+
+constexpr std::size_t kLeastBudget = 60;  ///< of a search: six settings on four seeds, and the stages after them
+constexpr std::size_t kDrawsPerSetting = 20;
+
+Row round_row(const RaceDecision& decision, double seconds) {
+  Row row;
+  const RaceState& state = decision.state;
+  row.add(kStage, static_cast<std::int64_t>(state.stage));
+  row.add(kStageEnd, static_cast<std::int64_t>(state.stage_end));
+  row.add(kSeeds, static_cast<std::int64_t>(state.seeds));
+  row.add(kRacing, JsonList{fmt::format("[{}]", fmt::join(state.racing, ", "))});
+  std::vector<Row> dropped;
+  for (const Loser& one : decision.losers) {
+    Row& loser = dropped.emplace_back();
+    loser.add("setting", static_cast<std::int64_t>(one.row));
+    loser.add("seeds", static_cast<std::int64_t>(one.seeds));
+    loser.add("difference", one.difference);
+    loser.add("p", one.p);
+  }
+  row.add(kDropped, list_of(dropped));
+  row.add(kSeconds, seconds);
+  if (decision.end.empty()) return row;
+  row.add(kEnd, decision.end);
+  row.add(kWinner, static_cast<std::int64_t>(decision.winner));
+  return row;
+}
+
+/// Returns a whole number of a round. Throws Error if it is missing, negative, or not below `limit`.
+std::size_t whole(const Row& row, const char* name, std::size_t limit, const Sweep& sweep) {
+  const std::optional<double> value = row.number(name);
+  if (value && *value >= 0.0 && *value < static_cast<double>(limit)) return static_cast<std::size_t>(*value);
+  throw Error((sweep.directory / "manifest.jsonl").string(), fmt::format("a round has no valid '{}'", name),
+              "the file is damaged: put it back as it was");
+}
+
+/// Returns the numbers in a list such as [0, 3, 7].
+std::vector<std::size_t> numbers_in(const Row& row, const char* name, std::size_t limit, const Sweep& sweep) {
+  std::vector<std::size_t> out;
+  const Scalar* value = row.find(name);
+  const auto* list = value != nullptr ? std::get_if<JsonList>(value) : nullptr;
+  const Tree tree = parse_json(fmt::format("{{\"list\": {}}}", list != nullptr ? list->text : "[]"), sweep.directory);
+  for (const Tree& item : tree.find("list")->items) {
+    Row one;
+    one.add(name, static_cast<double>(std::atoll(item.text.c_str())));
+    out.push_back(whole(one, name, limit, sweep));
+  }
+  return out;
+}
+
+/// Returns the values of the tuned keys, which are the last ones before the seed.
+std::vector<std::string> tuned_values(const Job& job, std::size_t keys) {
+  const auto end = job.values.end() - 1;
+  return {end - static_cast<std::ptrdiff_t>(keys), end};
+}
+
+/// Returns the value of a setting at a tuned key for a further job, from its recorded text.
+std::optional<Tree> value_of_text(const TunePlanner& planner, std::size_t key, const std::string& text) {
+  const TunedKey& tuned = planner.description().keys[key];
+  if (text.empty()) return std::nullopt;  // The plugins of this setting lack the option.
+  if (!tuned.range) {
+    const auto coordinate = planner.space().coordinate(key, text);
+    return coordinate ? std::optional(planner.space().value(key, *coordinate)) : std::nullopt;
+  }
+  Tree value = tuned.written;
+  value.text = text;
+  value.quoted = false;
+  return value;
+}
+
+SettingValues values_of_setting(const TunePlanner& planner, const RaceRecord& race, std::size_t setting) {
+  SettingValues out(planner.description().keys.size());
+  if (setting == 0) return out;  // the config as it stands
+  for (std::size_t key = 0; key < out.size(); ++key)
+    out[key] = value_of_text(planner, key, race.settings[setting].values[key]);
+  return out;
+}
+
+/// Returns the point of a setting. A value outside of the space, or of an option that the setting lacks, is drawn.
+Point point_of_setting(const TunePlanner& planner, const RacedSetting& setting, Random& random) {
+  Point out;
+  for (std::size_t key = 0; key < setting.values.size(); ++key) {
+    const TunedKey& tuned = planner.description().keys[key];
+    const auto coordinate = planner.space().coordinate(key, setting.values[key]);
+    const double drawn = tuned.range ? random.uniform() : static_cast<double>(random.index(tuned.values.size()));
+    out.push_back(coordinate.value_or(drawn));
+  }
+  return out;
+}
+
+/// Returns the values as Job::values has them, if the plugins have all options.
+std::vector<std::string> texts_of(const SettingValues& values) {
+  std::vector<std::string> out;
+  for (const std::optional<Tree>& one : values) out.push_back(one ? value_text(*one) : "");
+  return out;
+}
+
+/// Draws settings near the elites. Better elites are drawn more often.
+std::vector<SettingValues> draw_settings(const TunePlanner& planner, const RaceRecord& race,
+                                         const RaceDecision& decision, std::size_t round) {
+  Random random(0, "tune.join", round);
+  std::set<std::vector<std::string>> seen;
+  for (const RacedSetting& one : race.settings) seen.insert(one.values);
+  // Weights 5, 4, 3, 2, 1: each elite occurs this many times.
+  std::vector<std::size_t> parents;
+  for (std::size_t rank = 0; rank < decision.elites.size(); ++rank)
+    parents.insert(parents.end(), decision.elites.size() - rank, decision.elites[rank]);
+  std::vector<SettingValues> out;
+  for (std::size_t draw = 0; draw < kDrawsPerSetting * decision.new_settings && out.size() < decision.new_settings;
+       ++draw) {
+    const RacedSetting& parent = race.settings[parents[random.index(parents.size())]];
+    const Point near = planner.space().near(point_of_setting(planner, parent, random), decision.spread, random);
+    SettingValues values = planner.values_at(near);
+    if (planner.is_wanted(values) && seen.insert(texts_of(values)).second) out.push_back(std::move(values));
+  }
+  return out;
+}
+
+/// Throws Error unless the first jobs of these settings would be planned as they are recorded.
+void check_unchanged(const TunePlanner& planner, const Sweep& sweep, const RaceRecord& race,
+                     const std::vector<std::size_t>& settings) {
+  std::vector<PlannedSetting> first;
+  for (const std::size_t one : settings) first.push_back({values_of_setting(planner, race, one), 0, 1});
+  const std::vector<Job> jobs = planner.plan(first, 0, false, [](const Job&, const ResolvedConfig&) {});
+  for (std::size_t i = 0; i < settings.size(); ++i) {
+    const Job& recorded = sweep.jobs[race.settings[settings[i]].jobs.front()];
+    if (i < jobs.size() && jobs[i].id == recorded.id) continue;
+    throw Error(sweep.directory.string(),
+                "the config groups, the files or the plugins of this race were changed since it began",
+                "restore them, or begin a new race with 'palpate tune'");
+  }
+}
+
+/// Writes the config of a job that a round adds. A process that was killed may have written it before.
+void write_job(const Sweep& sweep, const Job& job, const ResolvedConfig& config) {
+  const fs::path directory = sweep.directory / "jobs" / job.id;
+  if (is_there(directory / "config.yaml")) return;
+  refuse_link(directory.parent_path());
+  make_inner_folder(directory);
+  write_file(directory / "config.yaml", to_yaml_with_places(config.tree));
+}
+
+/// Returns the settings and seeds of the next round.
+std::vector<PlannedSetting> settings_of_round(const TunePlanner& planner, const RaceRecord& race,
+                                              const RaceDecision& decision, std::size_t round) {
+  std::vector<PlannedSetting> out;
+  if (!decision.end.empty()) {
+    const std::size_t fresh = planner.description().fresh;
+    if (decision.winner == 0 || fresh == 0) return out;
+    std::size_t used = 0;
+    for (const RacedSetting& one : race.settings) used = std::max(used, one.jobs.size());
+    for (const std::size_t one : {std::size_t{0}, decision.winner})
+      out.push_back({values_of_setting(planner, race, one), used, used + fresh});
+    return out;
+  }
+  for (const std::size_t one : decision.state.racing) {
+    const std::size_t has = race.settings[one].jobs.size();
+    if (has < decision.state.seeds) out.push_back({values_of_setting(planner, race, one), has, decision.state.seeds});
+  }
+  if (decision.new_settings == 0) return out;
+  for (SettingValues& values : draw_settings(planner, race, decision, round))
+    out.push_back({std::move(values), 0, kFirstSeeds});
+  return out;
+}
+
+/// Returns the number of settings among new jobs that the race does not have yet.
+std::size_t count_new_settings(const RaceRecord& race, const std::vector<Job>& jobs, std::size_t keys) {
+  std::set<std::vector<std::string>> known;
+  for (const RacedSetting& one : race.settings) known.insert(one.values);
+  const std::size_t before = known.size();
+  for (const Job& job : jobs) known.insert(tuned_values(job, keys));
+  return known.size() - before;
+}
+
+/// Throws Error if most runs have no value of the metric.
+void check_values(const std::vector<std::optional<double>>& results, const TuneDescription& description,
+                  const Sweep& sweep) {
+  const auto missing = std::count(results.begin(), results.end(), std::nullopt);
+  if (2 * static_cast<std::size_t>(missing) <= results.size()) return;
+  throw Error(sweep.directory.string(),
+              fmt::format("{} of {} runs have no value of '{}'", missing, results.size(), description.metric),
+              "see 'palpate compare' for the reasons, or tune another metric");
+}
+
+}  // namespace
+
+RaceRecord read_race(const Sweep& sweep, const TuneDescription& description) {
+  RaceRecord out;
+  if (sweep.rounds.empty())
+    throw Error(sweep.directory.string(), "is not the directory of a race", "it was not made by 'palpate tune'");
+  const std::size_t keys = description.keys.size();
+  if (sweep.keys.size() <= keys)
+    throw Error(sweep.directory.string(), "has fewer keys than its config tunes", "the files are damaged");
+  std::map<std::vector<std::string>, std::size_t> numbers;
+  std::size_t next = 0;
+  for (const SweepRound& round : sweep.rounds) {
+    const bool is_fresh = round.decision.find(kEnd) != nullptr;
+    for (; next < round.jobs; ++next) {
+      const std::vector<std::string> values = tuned_values(sweep.jobs[next], keys);
+      const auto [number, is_new] = numbers.emplace(values, out.settings.size());
+      if (is_new) out.settings.push_back({values, {}});
+      std::vector<std::size_t>& fresh = number->second == 0 ? out.fresh_of_own : out.fresh_of_winner;
+      (is_fresh ? fresh : out.settings[number->second].jobs).push_back(next);
+    }
+    if (!is_fresh) out.race_jobs = next;
+    const std::size_t all = out.settings.size();
+    const Scalar* list = round.decision.find(kDropped);
+    for (const Row& one : rows_of(list != nullptr && std::holds_alternative<JsonList>(*list) ? std::get<JsonList>(*list)
+                                                                                             : JsonList{"[]"}))
+      out.losers.push_back({whole(one, "setting", all, sweep), whole(one, "seeds", next + 1, sweep),
+                            one.number("difference").value_or(0.0), one.number("p").value_or(0.0)});
+  }
+  const Row& last = sweep.rounds.back().decision;
+  const std::size_t all = out.settings.size();
+  out.state = {whole(last, kStage, kLastStage + 1, sweep), whole(last, kStageEnd, std::size_t{1} << 40, sweep),
+               whole(last, kSeeds, sweep.jobs.size() + 1, sweep), numbers_in(last, kRacing, all, sweep)};
+  out.seconds = last.number(kSeconds).value_or(0.0);
+  out.end = last.text(kEnd);
+  if (out.has_ended()) out.winner = whole(last, kWinner, all, sweep);
+  return out;
+}
+
+void read_results(const Sweep& sweep, const TuneDescription& description, std::vector<std::optional<double>>& out) {
+  std::vector<std::size_t> next = all_jobs(sweep);
+  next.erase(next.begin(), next.begin() + static_cast<std::ptrdiff_t>(out.size()));
+  read_jobs(sweep, next, read_outcome, [&](std::size_t, const std::optional<Row>& row) {
+    const JobValue value = value_of_job(row ? &*row : nullptr, description.metric, "--metric");
+    const bool counts = value.status == ValueStatus::counted;
+    out.push_back(counts ? std::optional(description.more_is_better ? -value.value : value.value) : std::nullopt);
+  });
+}
+
+RaceTable race_table(const RaceRecord& race, const std::vector<std::optional<double>>& results) {
+  std::optional<double> worst;
+  for (const RacedSetting& one : race.settings) {
+    for (const std::size_t job : one.jobs) {
+      if (results[job]) worst = std::max(worst.value_or(*results[job]), *results[job]);
+    }
+  }
+  RaceTable out;
+  for (const RacedSetting& one : race.settings) {
+    std::vector<double>& row = out.emplace_back();
+    for (const std::size_t job : one.jobs) row.push_back(results[job].value_or(worst.value_or(0.0)));
+  }
+  return out;
+}
+
+SweepPlan plan_first_round(const TunePlanner& planner, std::size_t budget, const fs::path& runs, const JobSink& sink) {
+  const SearchSpace& space = planner.space();
+  const bool is_search = !space.is_finite();
+  if (is_search && budget < kLeastBudget)
+    throw Error("tune", fmt::format("{} jobs are too few for a search in continuous ranges", budget),
+                fmt::format("give at least {}, or lists of values", kLeastBudget));
+  std::vector<PlannedSetting> settings{{SettingValues(planner.description().keys.size()), 0, kFirstSeeds}};
+  const std::size_t most = initial_settings(budget);
+  for (const Point& point : is_search ? space.sobol(kDrawsPerSetting * most) : space.grid()) {
+    if (is_search && settings.size() == most) break;
+    SettingValues values = planner.values_at(point);
+    if (planner.is_wanted(values)) settings.push_back({std::move(values), 0, kFirstSeeds});
+  }
+  const std::vector<std::string>& keys = planner.keys();
+  SweepPlan plan{{{}, keys, planner.plan(settings, 0, true, sink)}, planner.written()};
+  check_readable(plan.config, planner.own().options.name);
+  if (plan.sweep.jobs.size() > budget)
+    throw Error("tune",
+                fmt::format("{} jobs are fewer than the first round needs: {} settings on {} seeds", budget,
+                            plan.sweep.jobs.size() / kFirstSeeds, kFirstSeeds),
+                fmt::format("give at least {}, or fewer values", plan.sweep.jobs.size()));
+  RaceDecision decision;
+  decision.state.stage_end = first_stage_end({is_search, 0.0}, budget);
+  for (std::size_t i = 0; i < plan.sweep.jobs.size() / kFirstSeeds; ++i) decision.state.racing.push_back(i);
+  plan.sweep.rounds.push_back({plan.sweep.jobs.size(), round_row(decision, 0.0)});
+  plan.sweep.directory = race_directory(planner, runs);
+  return plan;
+}
+
+fs::path race_directory(const TunePlanner& planner, const fs::path& runs) {
+  Sweep sweep;
+  sweep.rounds.emplace_back();  // The id of a sweep with rounds depends on its config only.
+  return runs / slug(planner.own().options.name) / sweep_id(planner.written(), sweep);
+}
+
+bool add_round(const TunePlanner& planner, const fs::path& directory, std::size_t budget, double seconds,
+               std::vector<std::optional<double>>& results) {
+  const TuneDescription& description = planner.description();
+  const FileLock lock = FileLock::wait_for(directory / "lock");
+  const Sweep sweep = read_sweep(directory);
+  RaceRecord race = read_race(sweep, description);
+  read_results(sweep, description, results);
+  if (race.has_ended()) return false;
+  check_values(results, description, sweep);
+  const RaceTable table = race_table(race, results);
+  const RaceRules rules{!planner.space().is_finite(), description.within};
+  std::set<std::string> known;
+  for (const Job& job : sweep.jobs) known.insert(job.id);
+  std::vector<Loser> losers;
+  for (;;) {
+    RaceDecision decision = decide(rules, race.state, table, budget, race.race_jobs);
+    check_unchanged(planner, sweep, race,
+                    decision.end.empty() ? decision.state.racing : std::vector<std::size_t>{0, decision.winner});
+    const std::vector<PlannedSetting> settings = settings_of_round(planner, race, decision, sweep.rounds.size());
+    std::vector<Job> jobs;
+    if (!settings.empty()) {
+      jobs = planner.plan(settings, sweep.jobs.size(), false, [&](const Job& job, const ResolvedConfig& config) {
+        if (known.count(job.id) == 0) write_job(sweep, job, config);
+      });
+    }
+    // A setting may be equal to an earlier one although its values are written differently.
+    jobs.erase(std::remove_if(jobs.begin(), jobs.end(), [&](const Job& job) { return known.count(job.id) > 0; }),
+               jobs.end());
+    for (std::size_t i = 0; i < jobs.size(); ++i) jobs[i].index = static_cast<int>(sweep.jobs.size() + i);
+    if (decision.end.empty()) {
+      const std::size_t joined = count_new_settings(race, jobs, description.keys.size());
+      for (std::size_t i = 0; i < joined; ++i) decision.state.racing.push_back(race.settings.size() + i);
+    }
+    losers.insert(losers.end(), decision.losers.begin(), decision.losers.end());
+    if (jobs.empty() && decision.end.empty()) {
+      race.state = decision.state;  // No setting could join: the next stage begins.
+      continue;
+    }
+    decision.losers = losers;
+    append_round(sweep, jobs, round_row(decision, seconds));
+    return true;
+  }
+}
+
+}  // namespace palpate

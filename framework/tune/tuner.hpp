@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: MIT
+// The rounds of a tuned sweep: plans the first one, and decides and appends the next one.
+#pragma once
+
+#include "sweep/plan.hpp"
+#include "sweep/sweep.hpp"
+#include "tune/planner.hpp"
+#include "tune/race.hpp"
+
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace palpate {
+
+/// A setting that has run in a race.
+struct RacedSetting {
+  std::vector<std::string> values;  ///< values of the tuned keys, as in Job::values
+  std::vector<std::size_t> jobs;    ///< its jobs on the first seeds, in the order of the seeds; without fresh seeds
+};
+
+/// A race as the manifest of its sweep has it.
+struct RaceRecord {
+  std::vector<RacedSetting> settings;                      ///< setting 0 is the config as it stands
+  RaceState state;                                         ///< after the last round
+  std::vector<Loser> losers;                               ///< of all rounds; Loser::row is the number of a setting
+  std::string end;                                         ///< reason why the race ended; "" if it goes on
+  std::size_t winner = 0;                                  ///< only if it ended
+  std::vector<std::size_t> fresh_of_winner, fresh_of_own;  ///< jobs on fresh seeds, in the order of the seeds
+  std::size_t race_jobs = 0;                               ///< number of jobs without those on fresh seeds
+  double seconds = 0.0;                                    ///< wall time of the race until the last decision
+
+  bool has_ended() const { return !end.empty(); }
+};
+
+/// Reads the race of a sweep with rounds. Throws Error for a damaged round.
+RaceRecord read_race(const Sweep& sweep, const TuneDescription& description);
+
+/// Appends the results of the jobs after the first `out.size()`: the metric, or its negative if more is better, so that
+/// less is better; nullopt for a run that failed or has no finite value. All jobs must have ended.
+void read_results(const Sweep& sweep, const TuneDescription& description, std::vector<std::optional<double>>& out);
+
+/// Returns one row per setting: its results in the order of the seeds. A missing result counts as the worst result of
+/// the whole race, because a setting whose runs fail must not win.
+RaceTable race_table(const RaceRecord& race, const std::vector<std::optional<double>>& results);
+
+/// Returns the directory of the race. Its last part is a hash of the config with the block `tune:`.
+std::filesystem::path race_directory(const TunePlanner& planner, const std::filesystem::path& runs);
+
+/// Plans the first round: the config as it stands, and settings that fill the space, on the first seeds. `budget`:
+/// number of jobs of the whole race. Throws Error if the budget does not suffice for the first round.
+SweepPlan plan_first_round(const TunePlanner& planner, std::size_t budget, const std::filesystem::path& runs,
+                           const JobSink& sink);
+
+/// Decides the next round from the results, creates the directories of its jobs, and appends the round to the manifest.
+/// All jobs must have ended. If another process has added a round meanwhile, does nothing. `seconds`: wall time of the
+/// race so far. `budget`: number of jobs of the whole race. `results`: those that read_results() appended in earlier
+/// calls. Returns false if the race has ended.
+///
+/// Throws Error if most runs of the first round have no value, or if the groups of the config were changed since the
+/// first round.
+bool add_round(const TunePlanner& planner, const std::filesystem::path& directory, std::size_t budget, double seconds,
+               std::vector<std::optional<double>>& results);
+
+}  // namespace palpate
