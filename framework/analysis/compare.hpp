@@ -9,7 +9,7 @@
 #include "analysis/column.hpp"
 #include "analysis/signed_rank.hpp"
 #include "analysis/statistics.hpp"
-#include "record/checkpoint.hpp"
+#include "record/evaluation_point.hpp"
 #include "sweep/sweep.hpp"
 #include "sweep/where_condition.hpp"
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "gp/loops.hpp"
+#include "gp/vector_loops.hpp"
 
 #include <algorithm>
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "gp/loops.cpp"
+#define HWY_TARGET_INCLUDE "gp/vector_loops.cpp"
 #include "math/highway.hpp"
 
 HWY_BEFORE_NAMESPACE();
