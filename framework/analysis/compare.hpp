@@ -33,7 +33,7 @@ struct CompareQuery {
   /// Name of the group with which all others are compared: "weighted, rbf". If the scene is one of the keys, "weighted"
   /// names the group `weighted` of each scene.
   std::optional<std::string> baseline;
-  bool ratios = false;  ///< whether to compute the ratio of the means for each pair
+  bool ratios = false;  ///< whether to compute, for every two compared groups, the ratio of their means
   CompareExtent extent = CompareExtent::pairs;
 };
 

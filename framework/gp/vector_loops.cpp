@@ -109,8 +109,8 @@ struct PlainTiles {
   }
 };
 
-/// Tiles of a product with mirror images. A tile of registers has half of the rows, because each cell has two sums,
-/// even and odd.
+/// Tiles of a product with mirror images. A tile of registers has half as many rows as in PlainTiles, because each cell
+/// needs registers for two sums: over the even and over the odd functions.
 struct MirroredTiles {
   const MirroredProduct& whole;
   const StripProduct& product = whole.half;

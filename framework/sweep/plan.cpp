@@ -39,7 +39,7 @@ class SweepPlanner {
     for (std::size_t i = 0; i < keys_.size(); ++i) key_numbers_.emplace(keys_[i], i);
   }
 
-  /// Adds the job of a combination, which must outlive this object.
+  /// Adds the job of a combination. The combination must outlive this object.
   void add(const Combination& combination, const JobSink& sink) {
     std::vector<Override> overrides = shared_;
     for (Override& one : overrides_of(combination)) overrides.push_back(std::move(one));

@@ -6,8 +6,8 @@
 namespace palpate::tapping {
 namespace {
 
-/// Strength of the prior of the slope, m^2. It is added to the sum of squared heights: (noise of a reading / expected
-/// slope)^2 = (1.5 N / 50 N/m)^2.
+/// Strength of the prior of the slope: (noise of a reading / expected slope)^2 = (1.5 N / 50 N/m)^2, in m^2. It is
+/// added to the sum of squared heights.
 constexpr double kSlopePrior = 0.0009;
 /// Weight of the tare, as a number of readings. The tare dominates the line while there are few readings.
 constexpr double kTareWeight = 5.0;
