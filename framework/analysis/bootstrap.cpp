@@ -52,7 +52,7 @@ ScaledInfluences scale_influences(const Clusters& clusters, double mean) {
 
 /// Returns the number of resamples for this number of clusters. A small sample gets more resamples, because the ends of
 /// its interval are far out in the distribution of resampled means, where draws are few. A very large sample gets fewer
-/// resamples, because 2000 resamples determine the ends within 3 % of half the interval.
+/// resamples, because 2000 suffice: they determine the ends within 3 % of half the interval.
 std::size_t resamples_of(std::size_t count) {
   constexpr std::size_t kMostDraws = 100'000'000;
   if (count > kMostDraws / kResamples) return std::max(kMostDraws / count, kResamples / 5);

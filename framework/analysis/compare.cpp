@@ -23,14 +23,14 @@ namespace {
 using Values = std::vector<std::string>;
 
 /// Value of a job and its unit of statistics.
-struct JobOutcome {
+struct ValueOfUnit {
   JobValue value;
   std::string unit;
 };
 
 /// The jobs of a group, sorted by their values of the pairing keys. The order of jobs in the sweep therefore has no
 /// effect.
-using JobOutcomes = std::map<Values, JobOutcome>;
+using JobOutcomes = std::map<Values, ValueOfUnit>;
 
 struct GroupOutcomes {
   Values values;
@@ -79,7 +79,7 @@ std::vector<GroupOutcomes> collect(const Sweep& sweep, const std::vector<Row>& r
     groups.push_back({group.values, {}, 0});
     for (const JobResult& one : group.jobs) {
       const auto& [job, row] = one;
-      JobOutcome outcome{value_of_job(row, query.metric, "--metric"), units.of(one)};
+      ValueOfUnit outcome{value_of_job(row, query.metric, "--metric"), units.of(one)};
       if (!where.keeps(one)) {
         out.left_out.add(outcome.value.status);
         outcome.value = {ValueStatus::left_out};
@@ -137,7 +137,7 @@ ComparedPair compare_pair(const std::vector<GroupOutcomes>& groups, std::size_t 
   UnitClusters of_b;
   UnitClusters differences;
   double largest = 0.0;
-  const auto add = [&](const JobOutcome& one, const JobOutcome& other) {
+  const auto add = [&](const ValueOfUnit& one, const ValueOfUnit& other) {
     const ValueStatus status = std::min(one.value.status, other.value.status);
     if (status == ValueStatus::counted) {
       // Pairs with the same seed have the same unit. Copies of one pair of runs also have the same unit.
@@ -153,7 +153,7 @@ ComparedPair compare_pair(const std::vector<GroupOutcomes>& groups, std::size_t 
   };
   for (const auto& [pairing, outcome] : a) {
     const auto partner = b.find(pairing);
-    add(outcome, partner != b.end() ? partner->second : JobOutcome{{ValueStatus::without_partner}, ""});
+    add(outcome, partner != b.end() ? partner->second : ValueOfUnit{{ValueStatus::without_partner}, ""});
   }
   for (const auto& [pairing, outcome] : b) {
     if (a.count(pairing) == 0) add({{ValueStatus::without_partner}, ""}, outcome);
@@ -182,7 +182,7 @@ std::string without_blanks(const std::string& name) { return boost::algorithm::e
 
 /// Groups that are compared with each other. These are the groups of one scene, because results on different scenes are
 /// not comparable. If all keys of `--by` belong to the scene, one block has all groups.
-struct ComparedBlock {
+struct GroupsWithBaseline {
   std::vector<std::size_t> groups;
   std::size_t baseline = 0;
 };
@@ -208,9 +208,9 @@ std::string values_at(const Values& values, const std::vector<bool>& places, boo
 
 /// Returns the blocks of groups. `kept`: indices of the groups with jobs that satisfy the condition. The baseline of a
 /// block is its first group.
-std::vector<ComparedBlock> blocks_of(const std::vector<ComparedGroup>& groups, const std::vector<std::size_t>& kept,
-                                     const std::vector<bool>& scenes) {
-  std::vector<ComparedBlock> out;
+std::vector<GroupsWithBaseline> blocks_of(const std::vector<ComparedGroup>& groups,
+                                          const std::vector<std::size_t>& kept, const std::vector<bool>& scenes) {
+  std::vector<GroupsWithBaseline> out;
   std::map<std::string, std::size_t> known;
   for (const std::size_t i : kept) {
     const auto [at, is_new] = known.emplace(values_at(groups[i].values, scenes, true), out.size());
@@ -222,14 +222,14 @@ std::vector<ComparedBlock> blocks_of(const std::vector<ComparedGroup>& groups, c
 
 /// Sets the baseline of each block to the group that --baseline names. --baseline may leave out the values of the
 /// scene; it then names one group per scene. Removes blocks without such a group. Throws Error if no block has one.
-void choose_baselines(std::vector<ComparedBlock>& blocks, const std::vector<ComparedGroup>& groups,
+void choose_baselines(std::vector<GroupsWithBaseline>& blocks, const std::vector<ComparedGroup>& groups,
                       const std::vector<bool>& scenes, const std::string& name) {
   const std::string wanted = without_blanks(name);
   const auto is_named = [&](const ComparedGroup& one) {
     return without_blanks(one.name) == wanted || without_blanks(values_at(one.values, scenes, false)) == wanted;
   };
-  std::vector<ComparedBlock> out;
-  for (const ComparedBlock& block : blocks) {
+  std::vector<GroupsWithBaseline> out;
+  for (const GroupsWithBaseline& block : blocks) {
     for (const std::size_t i : block.groups) {
       if (is_named(groups[i])) out.push_back({block.groups, i});
     }
@@ -259,9 +259,9 @@ void find_apart(const JobOutcomes& a, const JobOutcomes& b, std::set<std::size_t
 }
 
 /// Adds the pairs of each block: all pairs, or only the pairs with the baseline if there are many groups.
-void add_pairs(const std::vector<ComparedBlock>& blocks, const std::vector<GroupOutcomes>& groups,
+void add_pairs(const std::vector<GroupsWithBaseline>& blocks, const std::vector<GroupOutcomes>& groups,
                const CompareQuery& query, Comparison& out) {
-  for (const ComparedBlock& block : blocks) {
+  for (const GroupsWithBaseline& block : blocks) {
     const bool one_baseline = query.baseline || block.groups.size() > kMostGroupsInPairs;
     out.one_baseline = out.one_baseline || one_baseline;
     for (auto second = block.groups.begin(); second != block.groups.end(); ++second) {
@@ -332,7 +332,7 @@ Comparison compare(const Sweep& sweep, const std::vector<Row>& results, const Co
     if (!out.groups[i].counts.all_are(ValueStatus::left_out)) kept.push_back(i);
   }
   const std::vector<bool> scenes = scene_places(sweep, query.by);
-  std::vector<ComparedBlock> blocks = blocks_of(out.groups, kept, scenes);
+  std::vector<GroupsWithBaseline> blocks = blocks_of(out.groups, kept, scenes);
   out.scenes_apart = blocks.size() > 1;
   if (query.baseline) choose_baselines(blocks, out.groups, scenes, *query.baseline);
   out.compared = kept.size();

@@ -9,7 +9,7 @@
 #include "analysis/column.hpp"
 #include "analysis/signed_rank.hpp"
 #include "analysis/statistics.hpp"
-#include "record/checkpoint.hpp"
+#include "record/evaluation_point.hpp"
 #include "sweep/sweep.hpp"
 #include "sweep/where_condition.hpp"
 
@@ -33,7 +33,7 @@ struct CompareQuery {
   /// Name of the group with which all others are compared: "weighted, rbf". If the scene is one of the keys, "weighted"
   /// names the group `weighted` of each scene.
   std::optional<std::string> baseline;
-  bool ratios = false;  ///< whether to compute the ratio of the means for each pair
+  bool ratios = false;  ///< whether to compute, for every two compared groups, the ratio of their means
   CompareExtent extent = CompareExtent::pairs;
 };
 

@@ -2,8 +2,8 @@
 #include "analysis/pareto.hpp"
 
 #include "analysis/groups.hpp"
+#include "config/comparison.hpp"
 #include "config/quantity.hpp"
-#include "config/relation.hpp"
 #include "config/yaml.hpp"
 
 #include <palpate/error.hpp>

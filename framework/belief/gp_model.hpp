@@ -3,7 +3,7 @@
 // another part of the run first needs it.
 #pragma once
 
-#include <palpate/phases.hpp>
+#include <palpate/phase_clock.hpp>
 #include "belief/contact_log.hpp"
 #include "gp/candidate_grid.hpp"
 #include "gp/gaussian_process.hpp"

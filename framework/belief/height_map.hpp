@@ -2,7 +2,7 @@
 // The belief `height_map`: one height per position on the desk, tapped from above.
 #pragma once
 
-#include "belief/height_models.hpp"
+#include "belief/height_map_models.hpp"
 #include "belief/metrics.hpp"
 
 #include <palpate/belief.hpp>

@@ -38,7 +38,7 @@ class HeightModel {
   Eigen::VectorXd uncertainty_, variance_, mean_;
 };
 
-/// The map of the label GP. The label GP may be output 1 of the height GP (see height_models.hpp).
+/// The map of the label GP. The label GP may be output 1 of the height GP (see height_map_models.hpp).
 class LabelMap {
  public:
   /// `clip`: whether weight() is clipped.

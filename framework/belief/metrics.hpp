@@ -4,7 +4,7 @@
 
 #include "gp/candidate_grid.hpp"
 
-#include <palpate/errors.hpp>
+#include <palpate/reconstruction_errors.hpp>
 #include <palpate/scene.hpp>
 
 #include <optional>

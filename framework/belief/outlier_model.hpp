@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Probabilities that contacts are outliers. A contact is an outlier if its label is wrong, or if it is on an object and
-// its height is wrong. The footprint infers wrong labels.
+// its height is wrong. The footprint infers which labels are wrong.
 #pragma once
 
 #include "belief/contact_log.hpp"

@@ -21,12 +21,12 @@ namespace {
 enum class Format { ascii, little, big };
 
 /// Description of the vertices in the header. plain_ply() has removed all other elements.
-struct Header {
+struct PlyHeader {
   Format format = Format::ascii;
   long points = -1;
-  std::vector<const BinaryNumber*> properties;  ///< types of a vertex's properties
-  std::array<int, 3> axes{-1, -1, -1};          ///< indices of x, y and z among the properties
-  std::size_t length = 0;                       ///< bytes of the header, its last line end included
+  std::vector<const BinaryNumberType*> properties;  ///< types of a vertex's properties
+  std::array<int, 3> axes{-1, -1, -1};              ///< indices of x, y and z among the properties
+  std::size_t length = 0;                           ///< bytes of the header, its last line end included
 };
 
 class PointCloudReader {
@@ -34,7 +34,7 @@ class PointCloudReader {
   PointCloudReader(const std::string& bytes, const std::string& file) : bytes_(bytes), file_(file) {}
 
   PointCloud read() {
-    const Header header = read_header();
+    const PlyHeader header = read_header();
     const std::string_view body = std::string_view(bytes_).substr(header.length);
     return header.format == Format::ascii ? read_ascii(header, body) : read_binary(header, body);
   }
@@ -42,8 +42,8 @@ class PointCloudReader {
  private:
   [[noreturn]] void reject(const std::string& reason) const { throw Error(file_, reason, "export it again as PLY"); }
 
-  Header read_header() {
-    Header out;
+  PlyHeader read_header() {
+    PlyHeader out;
     std::size_t at = 0;
     bool of_vertices = false;
     const auto next = [&] {
@@ -96,8 +96,8 @@ class PointCloudReader {
     return out;
   }
 
-  void add_property(Header& header, const std::string& type, const std::string& name) const {
-    const BinaryNumber* scalar = ply_scalar(type);
+  void add_property(PlyHeader& header, const std::string& type, const std::string& name) const {
+    const BinaryNumberType* scalar = ply_scalar(type);
     if (scalar == nullptr) reject("has vertices with a property of type '" + type + "'");
     for (std::size_t k = 0; k < 3; ++k) {
       if (name == std::array{"x", "y", "z"}[k]) header.axes[k] = static_cast<int>(header.properties.size());
@@ -109,7 +109,7 @@ class PointCloudReader {
     reject(fmt::format("is cut short: its header announces {} vertices", points));
   }
 
-  PointCloud read_ascii(const Header& header, std::string_view body) const {
+  PointCloud read_ascii(const PlyHeader& header, std::string_view body) const {
     std::vector<double> numbers(header.properties.size());
     std::vector<Eigen::Vector3d> out;
     const char* at = body.data();
@@ -130,16 +130,16 @@ class PointCloudReader {
     return cloud_of(out);
   }
 
-  PointCloud read_binary(const Header& header, std::string_view body) const {
+  PointCloud read_binary(const PlyHeader& header, std::string_view body) const {
     std::size_t row = 0;
-    for (const BinaryNumber* scalar : header.properties) row += scalar->size;
+    for (const BinaryNumberType* scalar : header.properties) row += scalar->size;
     if (body.size() / row < static_cast<std::size_t>(header.points)) reject_short(header.points);
     std::vector<double> numbers(header.properties.size());
     std::vector<Eigen::Vector3d> out;
     const char* at = body.data();
     for (long i = 0; i < header.points; ++i) {
       for (std::size_t k = 0; k < numbers.size(); ++k) {
-        const BinaryNumber& scalar = *header.properties[k];
+        const BinaryNumberType& scalar = *header.properties[k];
         std::array<char, 8> bytes{};
         std::copy_n(at, scalar.size, bytes.begin());
         if (header.format == Format::big) std::reverse(bytes.begin(), bytes.begin() + static_cast<long>(scalar.size));
@@ -151,7 +151,7 @@ class PointCloudReader {
     return cloud_of(out);
   }
 
-  static void add(const Header& header, const std::vector<double>& numbers, std::vector<Eigen::Vector3d>& out) {
+  static void add(const PlyHeader& header, const std::vector<double>& numbers, std::vector<Eigen::Vector3d>& out) {
     Eigen::Vector3d point;
     for (std::size_t k = 0; k < 3; ++k)
       point(static_cast<Eigen::Index>(k)) = numbers[static_cast<std::size_t>(header.axes[k])];

@@ -15,9 +15,10 @@ namespace palpate {
 /// subtracted before the fit. With all effects of the file, the simulator therefore has the same mean error as the arm.
 ///
 /// Throws Error with a remedy for fewer than 10 contacts, for runs that cannot be simulated, and for a scene that does
-/// not match its config. A scene does not match if more than a fifth of a run's contacts differ by more than 1 cm from
-/// all heights within 1 cm of their positions. It also does not match if more than a twentieth of a run's contacts (and
-/// at least two) are more than 1 cm below all these heights, or if the common offset of all runs exceeds 3 cm.
+/// not match its config. A scene does not match in any of these cases:
+/// - More than a fifth of a run's contacts differ by more than 1 cm from all heights within 1 cm of their positions.
+/// - More than a twentieth of a run's contacts, and at least two, are more than 1 cm below all these heights.
+/// - The common offset of all runs exceeds 3 cm.
 std::string calibrate(const RunEnvironment& environment, const std::vector<RecordedRun>& recordings);
 
 }  // namespace palpate

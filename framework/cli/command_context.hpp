@@ -4,7 +4,7 @@
 #pragma once
 
 #include "config/compose.hpp"
-#include "host/host.hpp"
+#include "host/plugin_host.hpp"
 #include "record/run.hpp"
 
 #include <filesystem>

@@ -81,8 +81,8 @@ class CommandLine {
   ~CommandLine();
 
   /// Adds a command and returns it with its arguments, which live as long as this object. `function` performs the
-  /// command and returns the exit status. In `palpate`, `function` may be null (see PALPATE_WHOLE). `needed` adds the
-  /// parts of the build that the command needs.
+  /// command and returns the exit status. In the program `palpate` (not `palpate-whole`), `function` may be null (see
+  /// PALPATE_WHOLE). `needed` adds the parts of the build that the command needs.
   template <class Arguments>
   std::pair<Command, Arguments&> add(const char* name, const char* help,
                                      int (*function)(CommandEnvironment&, const Arguments&),

@@ -8,7 +8,7 @@
 #include "config/catch_error.hpp"
 #include "record/files.hpp"
 #include "record/json.hpp"
-#include "record/resolved.hpp"
+#include "record/resolved_config.hpp"
 #include "sweep/results_after_taps.hpp"
 
 #include <palpate/error.hpp>

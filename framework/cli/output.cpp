@@ -57,7 +57,8 @@ void set_record_line(std::string line) { record = std::move(line); }
 int finish_output(int status) {
   flush_output();
   errno = 0;
-  if (std::ferror(stdout) != 0) note_failure();  // CLI11 prints through std::cout.
+  // Also detects failed writes of CLI11, which prints through std::cout and therefore through stdout.
+  if (std::ferror(stdout) != 0) note_failure();
   // Some file systems report lost data only when the file is closed.
   errno = 0;
   const int copy = ::fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, STDERR_FILENO + 1);

@@ -7,7 +7,7 @@
 #include "cli/launch_options.hpp"
 #include "launch/execute_jobs.hpp"
 #include "launch/launcher.hpp"
-#include "record/resolved.hpp"
+#include "record/resolved_config.hpp"
 #include "sweep/sweep.hpp"
 
 #include <cstddef>

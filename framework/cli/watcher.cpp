@@ -18,7 +18,7 @@ namespace palpate::cli {
 namespace {
 
 /// Returns the first line. If half a minute passes without new text, returns the text that has arrived.
-std::string first_line(const Descriptor& from) {
+std::string first_line(const FileDescriptor& from) {
   constexpr int kMostWait = 30'000;
   std::string out;
   std::array<char, 256> some{};
@@ -38,7 +38,7 @@ void start_watcher(const palpate::cli::CommandEnvironment& program, const std::f
   const std::string whole = program.installation.whole.string();
   std::string said;
   std::optional<Pipe> pipe = open_pipe();
-  const Descriptor nothing = above_standard(::open("/dev/null", O_RDONLY | O_CLOEXEC));
+  const FileDescriptor nothing = above_standard(::open("/dev/null", O_RDONLY | O_CLOEXEC));
   palpate::ProgramCall watch{{whole, "watch", directory.string(), "--until-left"}, whole};
   // The watcher must not inherit open files. Otherwise a process that reads all output of this program would also wait
   // until the watcher ends.

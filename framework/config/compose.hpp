@@ -98,8 +98,8 @@ class Composer {
   /// Returns whether `strategy`, which an override names, replaces the value at `path` of `own`, the config's own file.
   bool is_replaced(const std::string& path, const Tree& own, const Tree& strategy) const;
   void lay_override(Tree& tree, const Override& one);
-  /// Merges the group file of a plugin within another plugin, for example an item of a list, into the tree. All other
-  /// parts of the tree must be merged before.
+  /// Merges the group file of an inner plugin into the tree. An inner plugin is part of another plugin, for example an
+  /// item of its list. All other parts of the tree must be merged before.
   void choose_inner(Tree& tree, const Choice& choice, const std::filesystem::path& beside);
 
   /// Returns the content of a group: the values of its file on layer 0, the values of its bases on lower layers.

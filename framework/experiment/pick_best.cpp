@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "experiment/pick_best.hpp"
 
-#include "gp/loops.hpp"
+#include "gp/vector_loops.hpp"
 
 #include <algorithm>
 #include <array>

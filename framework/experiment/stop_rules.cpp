@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "experiment/stop_rules.hpp"
 
-#include "config/relation.hpp"
+#include "config/comparison.hpp"
 
 #include <Eigen/Core>
 

@@ -2,11 +2,11 @@
 // The record of one tap and of a whole run, and the observers of a run.
 #pragma once
 
-#include <palpate/phases.hpp>
+#include <palpate/phase_clock.hpp>
 
 #include <palpate/backend.hpp>
 #include <palpate/belief.hpp>
-#include <palpate/errors.hpp>
+#include <palpate/reconstruction_errors.hpp>
 #include <palpate/record_fields.hpp>
 #include <palpate/tap.hpp>
 

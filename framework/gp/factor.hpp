@@ -2,7 +2,7 @@
 // Cholesky factor of a covariance matrix that grows by one row per tap.
 #pragma once
 
-#include "gp/panels.hpp"
+#include "gp/aligned_matrices.hpp"
 
 #include <palpate/types.hpp>
 
@@ -52,7 +52,7 @@ class Factor {
 
   int size_ = 0;
   int capacity_ = 0;
-  loops::AlignedArray rows_;     ///< packed: see loops.hpp
+  loops::AlignedArray rows_;     ///< packed: see vector_loops.hpp
   loops::AlignedArray scratch_;  ///< aligned memory of one vector
   double log_determinant_ = 0.0;
   SingularPair largest_;

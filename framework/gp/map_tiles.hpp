@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Memory of the maps over the candidates in the layout of the loops (loops.hpp), and the mapping from cells to
+// Memory of the maps over the candidates in the layout of the loops (vector_loops.hpp), and the mapping from cells to
 // candidates.
 #pragma once
 
+#include "gp/aligned_matrices.hpp"
 #include "gp/candidate_grid.hpp"
-#include "gp/panels.hpp"
 #include "gp/workers.hpp"
 
 #include <palpate/types.hpp>
@@ -96,8 +96,8 @@ class MapTiles {
   /// are equal.
   void restart(int means, const VectorView& prior);
 
-  /// Returns the value to pass as `update` to a function of loops.hpp that updates strips from the index `strip` on.
-  /// `coefficients`: one coefficient per mean.
+  /// Returns the value to pass as `update` to a function of vector_loops.hpp that updates strips from the index `strip`
+  /// on. `coefficients`: one coefficient per mean.
   loops::Update update(int strip, const double* coefficients);
 
   /// Copy the mean k, or the variance, at all candidates to `out`, transformed by `reading`.

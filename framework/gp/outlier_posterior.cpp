@@ -49,8 +49,10 @@ struct Moments {
   double weight = 0.0;
 };
 
-/// Adds the mean of the coefficients given one set, and the part of their variance that comes from the constant.
-/// Returns the index of the set's remainder, which is the GP without the set (see OutlierSearch).
+/// Adds to `moments`, times `weight`: the mean of the coefficients if `set` is the set of outliers, the outer product
+/// of this mean with itself, and the part of the coefficients' covariance due to the unknown constant of f
+/// (OutlierProblem::mean_deviation). Returns the index of the set's remainder, which is the GP without the set (see
+/// OutlierSearch).
 int add_set(OutlierSearch& search, const InlierGp& gp, const OutlierSet& set, double weight, Moments& moments) {
   const int remainder = search.remainder_of(set);
   const auto ones = search.solved_ones(remainder);

@@ -2,7 +2,7 @@
 // Lists all libraries. Each library is loaded in its own child process, which a damaged library may crash or hang.
 #include "children/child_process.hpp"
 #include "host/builtin.hpp"
-#include "host/host.hpp"
+#include "host/plugin_host.hpp"
 
 #include <palpate/error.hpp>
 

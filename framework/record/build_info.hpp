@@ -3,7 +3,7 @@
 #pragma once
 
 #include "config/tree.hpp"
-#include "host/host.hpp"
+#include "host/plugin_host.hpp"
 
 #include <filesystem>
 #include <string>

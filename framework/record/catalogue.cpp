@@ -6,7 +6,7 @@
 #include "record/files.hpp"
 #include "record/record_reader.hpp"
 #include "record/recorded_run.hpp"
-#include "record/resolved.hpp"
+#include "record/resolved_config.hpp"
 #include "record/run_directory.hpp"
 
 #include <fmt/format.h>

@@ -4,7 +4,7 @@
 // its id. record/gate.hpp checks them.
 #pragma once
 
-#include "config/relation.hpp"
+#include "config/comparison.hpp"
 #include "config/resolve.hpp"
 #include "config/tree.hpp"
 

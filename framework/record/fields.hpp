@@ -6,7 +6,7 @@
 
 #include "experiment/tap_record.hpp"
 #include "record/field.hpp"
-#include "record/resolved.hpp"
+#include "record/resolved_config.hpp"
 
 #include <palpate/error.hpp>
 

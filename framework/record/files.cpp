@@ -31,15 +31,15 @@ Error failed(const fs::path& file, const char* action) {
 
 /// Opens a file with a descriptor above those of the standard streams. Otherwise, if the process was started without
 /// these streams, the file would become one of them.
-Descriptor open_file(const fs::path& file, int flags) {
+FileDescriptor open_file(const fs::path& file, int flags) {
   // If the path is a pipe, O_NONBLOCK avoids waiting for the process at its other end.
   return above_standard(::open(file.c_str(), flags | O_CLOEXEC | O_NONBLOCK | O_NOCTTY, 0666));
 }
 
 /// Opens a file for writing. Fails if the path is a link, because the author of the link could choose which file is
 /// overwritten.
-Descriptor open_to_write(const fs::path& file, int flags) {
-  Descriptor opened = open_file(file, flags | O_NOFOLLOW);
+FileDescriptor open_to_write(const fs::path& file, int flags) {
+  FileDescriptor opened = open_file(file, flags | O_NOFOLLOW);
   if (opened) return opened;
   if (errno == ELOOP) refuse_link(file);
   fail(file, "cannot be opened");
@@ -49,17 +49,17 @@ Descriptor open_to_write(const fs::path& file, int flags) {
 /// process fails, too. A process can test for such a lock without taking it.
 const struct flock kWholeFile { F_WRLCK, SEEK_SET, 0, 0, 0 };
 
-Descriptor open_lock(const fs::path& file) { return open_to_write(file, O_RDWR | O_CREAT | O_APPEND); }
+FileDescriptor open_lock(const fs::path& file) { return open_to_write(file, O_RDWR | O_CREAT | O_APPEND); }
 
 /// Duplicates the descriptor and closes the copy. At each close, Linux passes all written data to the file system. The
 /// original descriptor keeps its lock.
-bool flush_file(const Descriptor& file) {
+bool flush_file(const FileDescriptor& file) {
   const int copy = ::fcntl(file.number(), F_DUPFD_CLOEXEC, STDERR_FILENO + 1);
   return copy >= 0 && ::close(copy) == 0;
 }
 
 void sync_folder(const fs::path& folder) {
-  const Descriptor opened = open_file(folder, O_RDONLY | O_DIRECTORY);
+  const FileDescriptor opened = open_file(folder, O_RDONLY | O_DIRECTORY);
   if (!opened && errno == EACCES) return;  // the folder of another user, which this process did not make
   // These errors are ignored: the file system cannot sync folders (EINVAL) or is read-only (EROFS).
   const auto needs_none = [] { return errno == EINVAL || errno == EROFS; };
@@ -173,7 +173,7 @@ void remove_temporaries(const fs::path& folder) {
   std::error_code none;
   for (const fs::path& file : list_folder(folder)) {
     if (!is_temporary(file.filename().string())) continue;
-    const Descriptor left = open_file(file, O_RDWR | O_NOFOLLOW);
+    const FileDescriptor left = open_file(file, O_RDWR | O_NOFOLLOW);
     if (left && ::fcntl(left.number(), F_OFD_SETLK, &kWholeFile) == 0) fs::remove(file, none);
   }
 }
@@ -253,7 +253,7 @@ std::optional<LastLine> last_line_if_there(const fs::path& file) {
 
 AppendFile::AppendFile(const fs::path& file) : AppendFile(file, open_to_write(file, O_WRONLY | O_CREAT | O_APPEND)) {}
 
-AppendFile::AppendFile(fs::path file, Descriptor descriptor)
+AppendFile::AppendFile(fs::path file, FileDescriptor descriptor)
     : file_(std::move(file)), descriptor_(std::move(descriptor)) {}
 
 void AppendFile::append(const std::string& text, bool sync) {
@@ -341,7 +341,7 @@ void FileLock::check_in_place() const {
 }
 
 AppendFile FileLock::append_file() const {
-  Descriptor copy(::fcntl(descriptor_.number(), F_DUPFD_CLOEXEC, STDERR_FILENO + 1));
+  FileDescriptor copy(::fcntl(descriptor_.number(), F_DUPFD_CLOEXEC, STDERR_FILENO + 1));
   if (!copy) fail(file_, "cannot be opened");
   return {file_, std::move(copy)};
 }
@@ -351,7 +351,7 @@ bool FileLock::is_held(const fs::path& file) {
   struct stat what {};
   if (::lstat(file.c_str(), &what) != 0 && !shows_nothing(errno)) fail(file, "cannot be accessed");
   if (!S_ISREG(what.st_mode)) return false;
-  const Descriptor in = open_file(file, O_RDONLY | O_NOFOLLOW);
+  const FileDescriptor in = open_file(file, O_RDONLY | O_NOFOLLOW);
   if (!in && shows_nothing(errno)) return false;
   struct flock other = kWholeFile;
   if (in && ::fcntl(in.number(), F_OFD_GETLK, &other) == 0) return other.l_type != F_UNLCK;

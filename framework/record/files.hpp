@@ -41,7 +41,7 @@ class TemporaryFile {
  private:
   std::filesystem::path file_;
   std::filesystem::path path_;
-  Descriptor descriptor_;
+  FileDescriptor descriptor_;
 };
 
 /// Removes those temporary files in `folder` that no process has locked, because the processes that wrote them were
@@ -112,10 +112,10 @@ class AppendFile {
 
  private:
   friend class FileLock;
-  AppendFile(std::filesystem::path file, Descriptor descriptor);
+  AppendFile(std::filesystem::path file, FileDescriptor descriptor);
 
   std::filesystem::path file_;
-  Descriptor descriptor_;
+  FileDescriptor descriptor_;
   std::optional<Error> failure_;  ///< error of an earlier call; append() and flush() throw it again
 };
 
@@ -155,8 +155,8 @@ class FileLock {
   explicit FileLock(const std::filesystem::path& file, int command);
 
   std::filesystem::path file_;
-  Descriptor descriptor_;
-  Descriptor folder_;
+  FileDescriptor descriptor_;
+  FileDescriptor folder_;
   int owner_ = 0;  ///< id of the process that took the lock
 };
 

@@ -3,9 +3,9 @@
 #pragma once
 
 #include "experiment/tap_record.hpp"
-#include "host/host.hpp"
+#include "host/plugin_host.hpp"
 #include "record/record_reader.hpp"
-#include "record/resolved.hpp"
+#include "record/resolved_config.hpp"
 #include "record/row.hpp"
 
 #include <filesystem>

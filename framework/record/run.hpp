@@ -3,10 +3,10 @@
 #pragma once
 
 #include "experiment/experiment.hpp"
-#include "host/host.hpp"
+#include "host/plugin_host.hpp"
 #include "record/build_info.hpp"
 #include "record/recorded_run.hpp"
-#include "record/resolved.hpp"
+#include "record/resolved_config.hpp"
 #include "record/row.hpp"
 #include "record/run_directory.hpp"
 #include "record/stopwatch.hpp"

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "record/files.hpp"
-#include "record/resolved.hpp"
+#include "record/resolved_config.hpp"
 #include "sweep/plan.hpp"
 
 #include <filesystem>

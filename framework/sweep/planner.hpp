@@ -3,8 +3,8 @@
 #pragma once
 
 #include "config/compose.hpp"
-#include "host/host.hpp"
-#include "record/resolved.hpp"
+#include "host/plugin_host.hpp"
+#include "record/resolved_config.hpp"
 #include "sweep/description.hpp"
 #include "sweep/sweep.hpp"
 

@@ -2,7 +2,7 @@
 // The results of a sweep as if its jobs had ended earlier: at given checkpoints.
 #pragma once
 
-#include "record/checkpoint.hpp"
+#include "record/evaluation_point.hpp"
 #include "sweep/tap_summaries.hpp"
 
 #include <functional>

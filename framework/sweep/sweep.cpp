@@ -6,7 +6,7 @@
 #include "config/yaml.hpp"
 #include "record/files.hpp"
 #include "record/json.hpp"
-#include "record/resolved.hpp"
+#include "record/resolved_config.hpp"
 #include "record/run.hpp"
 #include "sweep/read_jobs.hpp"
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "sweep/where_condition.hpp"
 
+#include "config/comparison.hpp"
 #include "config/quantity.hpp"
-#include "config/relation.hpp"
 
 #include <palpate/error.hpp>
 

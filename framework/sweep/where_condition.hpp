@@ -40,8 +40,8 @@ class WhereCondition {
   /// `not rmse_m <= 3 mm` both exclude the job (Kleene's three-valued logic). `and` and `or` stop as soon as the result
   /// is certain, so that `spacing != none and spacing > 2 mm` is valid.
   ///
-  /// Throws Error, with the place of the condition, for an unknown name on the left; its hint comes from `known`. Also
-  /// throws Error for texts compared by order (<, >) and for units of different dimensions.
+  /// Throws Error, with the place of the condition, for an unknown name on the left; the Error's hint comes from
+  /// `known`. Also throws Error for texts compared by order (<, >) and for units of different dimensions.
   bool holds(const Values& value_of, const std::vector<std::string>& known) const;
 
   const std::string& place() const { return place_; }

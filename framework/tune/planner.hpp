@@ -3,8 +3,8 @@
 #pragma once
 
 #include "config/compose.hpp"
-#include "host/host.hpp"
-#include "record/resolved.hpp"
+#include "host/plugin_host.hpp"
+#include "record/resolved_config.hpp"
 #include "sweep/planner.hpp"
 #include "tune/description.hpp"
 #include "tune/search_space.hpp"

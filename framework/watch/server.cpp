@@ -297,8 +297,9 @@ bool Server::Impl::is_own_name(const std::string& host) const {
   beast::error_code none;
   const auto number = asio::ip::make_address(host, none);
   if (none) return host == "localhost" || (!acceptor.local_endpoint().address().is_loopback() && host == host_name());
-  // Numeric addresses are safe, because requests of a website with a foreign name contain this name instead. A server
-  // that only listens on a loopback address accepts only loopback addresses.
+  // `host` is the name in the Host header of a request. A numeric address is safe: if a foreign website sends its
+  // visitors' browsers here (DNS rebinding), the header contains the name of that website. A server that only listens
+  // on a loopback address accepts only loopback addresses.
   return number.is_loopback() || !acceptor.local_endpoint().address().is_loopback();
 }
 

@@ -13,8 +13,8 @@ struct Matern12Shape : PlainShape {
     take_exponentials(z);
   }
   void slopes(Numbers z, Numbers slope) const {
-    // At r = 0, the slope -2 df / d(r^2) is infinite, but the derivative by the length scale, slope * r^2, is 0. The
-    // lower bound of the root keeps the slope finite.
+    // At r = 0, the slope -2 df / d(r^2) is infinite. The derivative by the logarithm of the length scale is
+    // slope * r^2, which is 0. The lower bound of the root keeps the slope finite.
     slope = 1.0 / z.sqrt().max(1e-150);
     values(z);
     slope *= z;

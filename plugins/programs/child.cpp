@@ -50,7 +50,7 @@ class NoSigpipe {
 
 /// Waits for `events` of a descriptor until `until`, but not longer than kPollInterval. Returns whether an event
 /// occurred.
-bool wait_for_event(const Descriptor& descriptor, short events, Clock::time_point until) {
+bool wait_for_event(const FileDescriptor& descriptor, short events, Clock::time_point until) {
   const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(until - Clock::now()) +
                     std::chrono::milliseconds(1);  // The time is rounded up, which avoids a busy loop at the end.
   const auto wait = std::clamp(left, std::chrono::milliseconds(0), kPollInterval);
@@ -82,7 +82,7 @@ bool carries(pid_t pid, const std::string& mark) {
 
 }  // namespace
 
-Child::Child(ProgramCall program, const std::string& stderr_file, const Descriptor& kept) : stderr_(stderr_file) {
+Child::Child(ProgramCall program, const std::string& stderr_file, const FileDescriptor& kept) : stderr_(stderr_file) {
   static std::atomic<int> count{0};
   // Each plugin has a separate copy of this counter. The address of the copy is unique in the process.
   const auto whose = reinterpret_cast<std::uintptr_t>(&count);
@@ -99,7 +99,7 @@ Child::Child(ProgramCall program, const std::string& stderr_file, const Descript
   if (pid_ < 0) fail("command", "cannot start '" + program.file + "'");
   input_ = std::move(in->to_write);
   output_ = std::move(out->to_read);
-  for (const Descriptor* end : {&input_, &output_}) ::fcntl(end->number(), F_SETFL, O_NONBLOCK);
+  for (const FileDescriptor* end : {&input_, &output_}) ::fcntl(end->number(), F_SETFL, O_NONBLOCK);
 }
 
 Child::~Child() {

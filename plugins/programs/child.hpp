@@ -38,7 +38,7 @@ class Child {
   /// Starts `program`. The stderr of the program is appended to the file `stderr_file`. If the name is empty, stderr is
   /// dropped. If `kept` is not empty, the program inherits this descriptor. Throws Error if the program cannot be
   /// started.
-  Child(ProgramCall program, const std::string& stderr_file, const Descriptor& kept);
+  Child(ProgramCall program, const std::string& stderr_file, const FileDescriptor& kept);
   /// Ends the program. Closes its stdin, sends SIGTERM to its group after kGrace, and finally sends SIGKILL to all
   /// descendants. Afterwards, no process of the program remains.
   ~Child();
@@ -76,8 +76,8 @@ class Child {
   StderrLog stderr_;
   std::string mark_;             ///< NAME=VALUE in the environment of the program; all descendants inherit it
   std::set<pid_t> descendants_;  ///< known descendants, and the program
-  Descriptor input_;             ///< write end of stdin
-  Descriptor output_;            ///< read end of stdout
+  FileDescriptor input_;         ///< write end of stdin
+  FileDescriptor output_;        ///< read end of stdout
   std::string buffer_;           ///< output that no read() has returned yet
   pid_t pid_ = -1;
 };

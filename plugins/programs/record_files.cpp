@@ -26,11 +26,11 @@ std::string note_of(long long bytes) { return fmt::sprintf(kNote, bytes); }
 
 const auto kNoteLength = static_cast<off_t>(note_of(0).size());
 
-Descriptor open_recorded(const std::string& file, int flags) {
+FileDescriptor open_recorded(const std::string& file, int flags) {
   const int number = ::open(file.c_str(), flags | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0644);
   if (number < 0 && errno == ELOOP)
     throw Error(file, "is a symbolic link, and links in a record are not followed", "remove it", Error::Kind::run);
-  Descriptor out = above_standard(number);
+  FileDescriptor out = above_standard(number);
   if (!out) fail("command", "cannot open a pipe or file");
   return out;
 }
@@ -84,8 +84,8 @@ std::string StderrLog::read(off_t begin, off_t end) const {
   return out;
 }
 
-Descriptor lock_file(const std::string& file, const WaitLimit& limit) {
-  Descriptor lock = open_recorded(file, O_RDWR);
+FileDescriptor lock_file(const std::string& file, const WaitLimit& limit) {
+  FileDescriptor lock = open_recorded(file, O_RDWR);
   // The lock is requested repeatedly, because a blocking wait could not be interrupted.
   while (::flock(lock.number(), LOCK_EX | LOCK_NB) != 0) {
     if (errno != EWOULDBLOCK && errno != EINTR) fail(file, "cannot be locked");
@@ -95,7 +95,7 @@ Descriptor lock_file(const std::string& file, const WaitLimit& limit) {
   return lock;
 }
 
-void write_holder(const Descriptor& lock, pid_t holder) {
+void write_holder(const FileDescriptor& lock, pid_t holder) {
   // If this fails, a later message lacks the process id, and nothing else is affected.
   if (::ftruncate(lock.number(), 0) == 0) write_all(lock, std::to_string(holder) + '\n');
 }

@@ -40,7 +40,7 @@ class StderrLog {
   /// stored. Throws Error.
   explicit StderrLog(const std::string& file);
 
-  const Descriptor& descriptor() const { return file_; }
+  const FileDescriptor& descriptor() const { return file_; }
 
   /// Removes the middle if the file is too large. Call this function regularly, because the file grows between the
   /// calls.
@@ -53,7 +53,7 @@ class StderrLog {
   off_t size() const;
   std::string read(off_t begin, off_t end) const;
 
-  Descriptor file_;
+  FileDescriptor file_;
   off_t begin_ = 0;         ///< size of the file at construction
   long long left_out_ = 0;  ///< bytes removed so far
 };
@@ -64,10 +64,10 @@ void keep_copy(const std::string& file, const std::string& text);
 /// Creates and locks `file`. Returns an empty descriptor if another program still holds the lock at the end of `limit`.
 /// A program that inherits the descriptor holds the lock until it and all its descendants with the descriptor have
 /// ended, even if this process ends before. Throws Error if `file` cannot be created or locked.
-Descriptor lock_file(const std::string& file, const WaitLimit& limit);
+FileDescriptor lock_file(const std::string& file, const WaitLimit& limit);
 
 /// Writes the process id of the program that holds the lock, for messages of later attempts.
-void write_holder(const Descriptor& lock, pid_t holder);
+void write_holder(const FileDescriptor& lock, pid_t holder);
 /// Returns the process id in `file`. Returns "?" if there is none.
 std::string read_holder(const std::string& file);
 

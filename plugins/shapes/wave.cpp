@@ -98,7 +98,7 @@ class Wave final : public Shape {
     const double along = line.direction.x();
     const double steepest = o_.amplitude * k_ * along;
     if (!(std::abs(line.direction.z()) < std::abs(steepest))) return kInfinity;
-    // The phase is counted along the line.
+    // The phase grows along the line, also if the line points towards -x.
     const double turn = std::copysign(1.0, along) * math::asin(-line.direction.z() / steepest);
     const double rate = k_ * std::abs(along);
     const double phase = std::copysign(1.0, along) * k_ * line.origin.x() + rate * from;

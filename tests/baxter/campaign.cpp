@@ -3,7 +3,7 @@
 
 #include "baxter/body_bench.hpp"
 #include "config/compose.hpp"
-#include "record/resolved.hpp"
+#include "record/resolved_config.hpp"
 
 #include <palpate/random.hpp>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // New readings count, not reads: slow streams, a slow driver, and a driver that could not receive.
 #include "baxter/guard_bench.hpp"
-#include "baxter/ros/heartbeat.hpp"
+#include "baxter/ros/thread_gaps.hpp"
 
 #include <gtest/gtest.h>
 

@@ -2,8 +2,8 @@
 // fake_baxter CONFIG [KEY=VALUE ...]: simulates the robot of an experiment on the ROS network of ROS_MASTER_URI.
 #include "config/compose.hpp"
 #include "fake_baxter/node.hpp"
-#include "host/host.hpp"
-#include "record/resolved.hpp"
+#include "host/plugin_host.hpp"
+#include "record/resolved_config.hpp"
 #include "scene/scene_options.hpp"
 
 #include <palpate/error.hpp>

@@ -2,7 +2,7 @@
 // What all doors stand on: a folder of this process, the plugins of this build, the shipped configs.
 #pragma once
 
-#include "host/host.hpp"
+#include "host/plugin_host.hpp"
 
 #include <filesystem>
 #include <string>

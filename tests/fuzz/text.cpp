@@ -6,7 +6,7 @@
 #include "config/quantity.hpp"
 #include "config/yaml.hpp"
 #include "process/protocol.hpp"
-#include "record/resolved.hpp"
+#include "record/resolved_config.hpp"
 #include "support/requests.hpp"
 #include "sweep/description.hpp"
 #include "sweep/where_condition.hpp"

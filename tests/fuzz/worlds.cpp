@@ -9,7 +9,7 @@
 #include "config/compose.hpp"
 #include "experiment/experiment.hpp"
 #include "reading/npy.hpp"
-#include "record/resolved.hpp"
+#include "record/resolved_config.hpp"
 
 #include <palpate/error.hpp>
 

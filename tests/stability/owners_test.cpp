@@ -3,7 +3,7 @@
 // scale and taps, with places apart, repeated and nearly repeated. The sum over outliers and the default have theirs in
 // matrix_test.cpp. PALPATE_LONG=1 adds the cells of 1000 taps, half an hour; of the residual GP they have 100.
 #include "objective.hpp"
-#include "solids/reduction.hpp"
+#include "solids/expected_reduction.hpp"
 #include "solids/residual_gp.hpp"
 #include "stability/check.hpp"
 #include "stability/oracle.hpp"

@@ -4,7 +4,7 @@
 
 #include "record/files.hpp"
 #include "record/json.hpp"
-#include "record/resolved.hpp"
+#include "record/resolved_config.hpp"
 #include "sweep/sweep.hpp"
 
 #include <fmt/format.h>

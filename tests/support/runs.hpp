@@ -8,7 +8,7 @@
 #include "experiment/experiment.hpp"
 #include "record/fields.hpp"
 #include "record/json.hpp"
-#include "record/resolved.hpp"
+#include "record/resolved_config.hpp"
 #include "support/requests.hpp"
 #include "support/support.hpp"
 

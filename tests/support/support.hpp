@@ -2,7 +2,7 @@
 // What tests share: a folder that vanishes, the program run as a user runs it, and the places of this build.
 #pragma once
 
-#include "host/host.hpp"
+#include "host/plugin_host.hpp"
 
 #include <cstdlib>
 #include <filesystem>

@@ -2,7 +2,7 @@
 // The motions of configs/backend on an arm like Baxter's: whole runs of the paper's experiment, tap by tap.
 #include "config/compose.hpp"
 #include "experiment/experiment.hpp"
-#include "record/resolved.hpp"
+#include "record/resolved_config.hpp"
 #include "support/runs.hpp"
 #include "support/support.hpp"
 

@@ -2,7 +2,7 @@
 // Which run or sweep is meant by a folder or a name. The folders are written by hand, and with the times that they
 // need.
 #include "record/catalogue.hpp"
-#include "record/resolved.hpp"
+#include "record/resolved_config.hpp"
 
 #include "support/testing.hpp"
 

@@ -254,7 +254,7 @@ TEST_F(Appending, RefusesAfterAFailedSyncForTheSameReason) {
   // A pipe takes what is written and cannot be synced.
   const fs::path pipe = folder_.path() / "pipe";
   ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
-  const Descriptor reader(::open(pipe.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC));
+  const FileDescriptor reader(::open(pipe.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC));
   AppendFile log(pipe);
   const std::string words = error_of([&] { log.append("x", true); }, Error::Kind::run);
   EXPECT_EQ(words,

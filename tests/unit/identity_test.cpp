@@ -2,7 +2,7 @@
 // What enters the id of a run, and what a record means to later versions: options as several versions would have them.
 #include "config/compose.hpp"
 #include "config/describe.hpp"
-#include "record/resolved.hpp"
+#include "record/resolved_config.hpp"
 #include "unit/resolve_fixtures.hpp"
 
 #include <gmock/gmock.h>

@@ -3,7 +3,7 @@
 #include "config/compose.hpp"
 #include "config/describe.hpp"
 #include "experiment/experiment.hpp"
-#include "record/resolved.hpp"
+#include "record/resolved_config.hpp"
 #include "support/runs.hpp"
 #include "support/testing.hpp"
 

@@ -3,7 +3,7 @@
 #pragma once
 
 #include <palpate/belief_quantities.hpp>
-#include <palpate/errors.hpp>
+#include <palpate/reconstruction_errors.hpp>
 #include <palpate/record_fields.hpp>
 #include <palpate/scene.hpp>
 #include <palpate/surface.hpp>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Plugin kind `kernel`: covariance of the heights at two positions.
+// Plugin kind `kernel`: covariance function of a Gaussian process (over heights, labels or distances), without signal
+// variance.
 #pragma once
 
 #include <palpate/options.hpp>

@@ -40,9 +40,9 @@ inline double log2(double x) { return log(x) * 1.44269504088896340736; }
 inline double hypot(double x, double y) { return std::sqrt(x * x + y * y); }
 
 /// Computes out_i = e^(x_i) for `count` numbers, with the vectors of the instruction set in use
-/// (palpate/instructions.hpp). The error is at most 1.2 ulp for x up to 709, and 40 ulp above. Results are never below
-/// e^-708 = 3.3e-308; infinity for x above 709.8. `out` may be `x`. The bytes are the same on every processor with
-/// fused multiplication and addition (x86 from 2013 on, all 64-bit ARM).
+/// (palpate/instruction_sets.hpp). The error is at most 1.2 ulp for x up to 709, and 40 ulp above. Results are never
+/// below e^-708 = 3.3e-308; infinity for x above 709.8. `out` may be `x`. The bytes are the same on every processor
+/// with fused multiplication and addition (x86 from 2013 on, all 64-bit ARM).
 void exp(const double* x, std::ptrdiff_t count, double* out);
 
 }  // namespace palpate::math

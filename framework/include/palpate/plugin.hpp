@@ -9,10 +9,10 @@
 #pragma once
 
 #include <palpate/error.hpp>
-#include <palpate/instructions.hpp>
+#include <palpate/instruction_sets.hpp>
 #include <palpate/motions.hpp>
 #include <palpate/options.hpp>
-#include <palpate/phases.hpp>
+#include <palpate/phase_clock.hpp>
 #include <palpate/random.hpp>
 #include <palpate/scene.hpp>
 #include <palpate/types.hpp>

@@ -44,7 +44,8 @@ std::vector<NamedJobGroup> groups_of(const Sweep& sweep, const std::vector<Row>&
   return groups;
 }
 
-/// Returns the settings of an axis for these values. The axis has few enough tics that their numbers do not overlap.
+/// Returns the gnuplot commands of an axis for these values. The axis has few enough tics that their numbers do not
+/// overlap.
 std::string value_axis(const std::vector<double>& values, double factor) {
   const auto [least, most] = std::minmax_element(values.begin(), values.end());
   const double spread = *most > *least ? (*most - *least) / factor : std::max(1e-9, std::abs(*most / factor));

@@ -30,7 +30,7 @@ HeldSockets& held() {
   static HeldSockets* const all = [] {
     ::pthread_atfork([] { held().guard.lock(); }, [] { held().guard.unlock(); },
                      [] {
-                       const Descriptor none(::open("/dev/null", O_RDONLY | O_CLOEXEC));
+                       const FileDescriptor none(::open("/dev/null", O_RDONLY | O_CLOEXEC));
                        for (const int number : held().numbers) {
                          if (none) ::dup3(none.number(), number, O_CLOEXEC);
                        }
@@ -58,11 +58,13 @@ SocketName name_of(const std::string& arm) {
 
 const sockaddr* generic(const SocketName& name) { return reinterpret_cast<const sockaddr*>(&name.address); }
 
-Descriptor make_socket() { return above_standard(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0)); }
+FileDescriptor make_socket() {
+  return above_standard(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
+}
 
 /// Returns a description of the process that holds the name.
 std::string holder_of(const SocketName& name) {
-  const Descriptor caller = make_socket();
+  const FileDescriptor caller = make_socket();
   ucred who{};
   socklen_t size = sizeof who;
   const bool known = caller && ::connect(caller.number(), generic(name), name.bytes) == 0 &&
@@ -75,7 +77,7 @@ std::string holder_of(const SocketName& name) {
 ArmLock::ArmLock(const std::string& where, const std::string& arm) {
   const SocketName name = name_of(arm);
   const std::lock_guard<std::mutex> no_fork(held().guard);
-  Descriptor socket = make_socket();
+  FileDescriptor socket = make_socket();
   // The socket accepts no connection. It only listens, so that holder_of() can connect and read the process id of the
   // holder.
   if (socket && ::bind(socket.number(), generic(name), name.bytes) == 0 && ::listen(socket.number(), SOMAXCONN) == 0) {

@@ -25,7 +25,7 @@ class ArmLock {
   ~ArmLock();
 
  private:
-  Descriptor socket_;
+  FileDescriptor socket_;
 };
 
 }  // namespace palpate

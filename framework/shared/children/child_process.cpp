@@ -29,7 +29,7 @@ std::vector<char*> pointers(const std::vector<std::string>& texts) {
 }
 
 /// Runs the work of a forked child. noexcept, because an exception must not unwind the copied stack of the parent.
-[[noreturn]] void be_child(const Descriptor& to_parent, pid_t parent,
+[[noreturn]] void be_child(const FileDescriptor& to_parent, pid_t parent,
                            const std::function<int(const ChildProcess::Say&)>& work) noexcept {
   // The parent may have ended before the call of prctl().
   if (::prctl(PR_SET_PDEATHSIG, SIGKILL) != 0 || ::getppid() != parent) ::_exit(1);
@@ -41,17 +41,17 @@ std::vector<char*> pointers(const std::vector<std::string>& texts) {
 
 }  // namespace
 
-void Descriptor::close() {
+void FileDescriptor::close() {
   const int reason = errno;
   if (number_ >= 0) ::close(number_);
   number_ = -1;
   errno = reason;
 }
 
-Descriptor above_standard(int number) {
-  Descriptor low(number);
+FileDescriptor above_standard(int number) {
+  FileDescriptor low(number);
   if (number < 0 || number > STDERR_FILENO) return low;
-  return Descriptor(::fcntl(number, F_DUPFD_CLOEXEC, STDERR_FILENO + 1));
+  return FileDescriptor(::fcntl(number, F_DUPFD_CLOEXEC, STDERR_FILENO + 1));
 }
 
 std::optional<Pipe> open_pipe() {
@@ -62,7 +62,7 @@ std::optional<Pipe> open_pipe() {
   return out;
 }
 
-bool write_all(const Descriptor& to, std::string_view text) {
+bool write_all(const FileDescriptor& to, std::string_view text) {
   while (!text.empty()) {
     const ssize_t written = ::write(to.number(), text.data(), text.size());
     if (written < 0 && errno != EINTR) return false;
@@ -136,7 +136,7 @@ std::unique_ptr<ChildProcess> ChildProcess::start(const ProgramCall& program, st
   std::unique_ptr<ChildProcess> out(new ChildProcess);
   // The input is in an unnamed file, because writing to a program that waits for its output to be read can block for
   // ever.
-  const Descriptor given = above_standard(::memfd_create("input", MFD_CLOEXEC));
+  const FileDescriptor given = above_standard(::memfd_create("input", MFD_CLOEXEC));
   if (!given || !write_all(given, input) || ::lseek(given.number(), 0, SEEK_SET) != 0) return nullptr;
   std::optional<Pipe> pipe = open_pipe();
   if (!pipe) return nullptr;

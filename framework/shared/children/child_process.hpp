@@ -20,17 +20,17 @@
 namespace palpate {
 
 /// An open file of this process. Programs that the process starts do not inherit the file.
-class Descriptor {
+class FileDescriptor {
  public:
-  Descriptor() = default;
+  FileDescriptor() = default;
   /// Takes ownership of `number`; -1 for none.
-  explicit Descriptor(int number) : number_(number) {}
-  Descriptor(Descriptor&& other) noexcept : number_(std::exchange(other.number_, -1)) {}
-  Descriptor& operator=(Descriptor&& other) noexcept {
+  explicit FileDescriptor(int number) : number_(number) {}
+  FileDescriptor(FileDescriptor&& other) noexcept : number_(std::exchange(other.number_, -1)) {}
+  FileDescriptor& operator=(FileDescriptor&& other) noexcept {
     std::swap(number_, other.number_);
     return *this;
   }
-  ~Descriptor() { close(); }
+  ~FileDescriptor() { close(); }
 
   explicit operator bool() const { return number_ >= 0; }
   int number() const { return number_; }
@@ -43,19 +43,19 @@ class Descriptor {
 
 /// Takes ownership of `number`, the result of open(), and moves it above the numbers of the standard files (0 to 2).
 /// open() returns a number from 0 to 2 if this process was started without standard files. A child's standard files
-/// would then replace the opened file. Returns an empty Descriptor, and keeps errno, if `number` is negative.
-Descriptor above_standard(int number);
+/// would then replace the opened file. Returns an empty FileDescriptor, and keeps errno, if `number` is negative.
+FileDescriptor above_standard(int number);
 
 /// Both ends of a pipe, with numbers above the standard files. The flag O_CLOEXEC is set when the pipe is created,
 /// because another thread may start a program at any time.
 struct Pipe {
-  Descriptor to_read;
-  Descriptor to_write;
+  FileDescriptor to_read;
+  FileDescriptor to_write;
 };
 std::optional<Pipe> open_pipe();
 
 /// Writes all of `text`, even if signals interrupt the writing. Returns false and sets errno after an error.
-bool write_all(const Descriptor& to, std::string_view text);
+bool write_all(const FileDescriptor& to, std::string_view text);
 
 /// Returns the environment of this process, one "NAME=VALUE" per variable.
 std::vector<std::string> own_environment();
@@ -124,7 +124,7 @@ class ChildProcess {
   void reap();
 
   pid_t pid_ = -1;
-  Descriptor pipe_;  ///< closed after the end
+  FileDescriptor pipe_;  ///< closed after the end
   int status_ = 0;
   std::string output_;
 };

@@ -3,7 +3,7 @@
 // set.
 #pragma once
 
-#include <palpate/instructions.hpp>
+#include <palpate/instruction_sets.hpp>
 
 #include <array>
 #include <vector>

@@ -8,13 +8,13 @@
 namespace palpate {
 
 /// Type of a number in a file: its size in bytes, and a function that converts little-endian bytes to a value.
-struct BinaryNumber {
+struct BinaryNumberType {
   std::size_t size;
   double (*read)(const char* bytes);
 };
 
 template <class Number>
-constexpr BinaryNumber binary_number() {
+constexpr BinaryNumberType binary_number() {
   return {sizeof(Number), [](const char* bytes) {
             Number out;
             std::memcpy(&out, bytes, sizeof out);

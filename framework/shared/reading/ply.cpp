@@ -16,7 +16,7 @@ namespace {
 
 /// Returns the size of a type in a binary file, bytes; 0 for an unknown name.
 std::size_t size_of(const std::string& type) {
-  const BinaryNumber* const scalar = ply_scalar(type);
+  const BinaryNumberType* const scalar = ply_scalar(type);
   return scalar != nullptr ? scalar->size : 0;
 }
 
@@ -34,9 +34,9 @@ struct Element {
 };
 
 /// Splits a file into its elements. split() returns false for a malformed file.
-class Splitter {
+class PlySplitter {
  public:
-  explicit Splitter(const std::string& bytes) : rest_(bytes) {}
+  explicit PlySplitter(const std::string& bytes) : rest_(bytes) {}
 
   bool split() {
     return read_header() && std::all_of(elements.begin(), elements.end(), [&](Element& one) { return read_rows(one); });
@@ -129,8 +129,8 @@ class Splitter {
 
 }  // namespace
 
-const BinaryNumber* ply_scalar(std::string_view name) {
-  static constexpr std::array<std::pair<std::array<const char*, 2>, BinaryNumber>, 8> kScalars{
+const BinaryNumberType* ply_scalar(std::string_view name) {
+  static constexpr std::array<std::pair<std::array<const char*, 2>, BinaryNumberType>, 8> kScalars{
       {{{"char", "int8"}, binary_number<std::int8_t>()},
        {{"uchar", "uint8"}, binary_number<std::uint8_t>()},
        {{"short", "int16"}, binary_number<std::int16_t>()},
@@ -147,7 +147,7 @@ const BinaryNumber* ply_scalar(std::string_view name) {
 
 std::string plain_ply(std::string bytes, const std::vector<std::string>& elements) {
   drop_byte_order_mark(bytes);
-  Splitter file(bytes);
+  PlySplitter file(bytes);
   if (!file.split()) return bytes;
   std::string header = file.begin;
   std::string body;

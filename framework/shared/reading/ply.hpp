@@ -11,7 +11,7 @@
 namespace palpate {
 
 /// Returns the type with this name in a PLY header, such as "uchar" or "uint8"; null for an unknown name.
-const BinaryNumber* ply_scalar(std::string_view name);
+const BinaryNumberType* ply_scalar(std::string_view name);
 
 /// Returns the file with only these `elements`, if present, in this order. In the result, words of the header are
 /// separated by single blanks, and the byte order mark is removed. For a malformed or incomplete file, only the byte

@@ -232,7 +232,7 @@ class ProgramAcquisition final : public Acquisition {
       program.environment.insert(program.environment.begin(), python_path());
       programs::find_checked(options_.command, words_, options_.folder, options_.checksum);
       keep_program();
-      child_ = std::make_unique<Child>(std::move(program), in_record(".stderr.txt"), Descriptor());
+      child_ = std::make_unique<Child>(std::move(program), in_record(".stderr.txt"), FileDescriptor());
     }
     const programs::WaitLimit limit{
         Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds)),

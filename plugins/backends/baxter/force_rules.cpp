@@ -74,7 +74,7 @@ std::optional<Fault> MotionGuard::check_pull(const Snapshot& seen, const Eigen::
   RiseLimits& rise = *motion_.rise;
   const double pulls = pull_force(rise, *seen.endpoint);
   if (rise.follows == ZeroMode::follows) {
-    if (!motion_.anchor) motion_.anchor = Motion::ZeroReference{rise.zero, tip.z()};
+    if (!motion_.anchor) motion_.anchor = StateSinceBegin::ZeroReference{rise.zero, tip.z()};
     const double most = kMostDrift * std::max(0.0, tip.z() - motion_.anchor->height);
     rise.zero -= rise.sign * pulls * std::min(1.0, since / kRiseFollows);
     rise.zero = std::clamp(rise.zero, motion_.anchor->zero - most, motion_.anchor->zero + most);

@@ -236,7 +236,7 @@ class MotionGuard {
     Joints arm;  ///< measured joints at that time
   };
   /// State that begin() resets.
-  struct Motion {
+  struct StateSinceBegin {
     std::deque<SentCommand> sent;
     std::deque<double> looks;            ///< times of reads within ReadingCounter::kWindow
     double began = 0.0;                  ///< time of the first read
@@ -256,7 +256,7 @@ class MotionGuard {
 
   Workspace workspace_;
   double force_stop_;
-  Motion motion_;
+  StateSinceBegin motion_;
   ZeroMode zero_ = ZeroMode::stays;
   ReadingCounter joint_stream_;
   ReadingCounter endpoint_stream_;

@@ -13,7 +13,8 @@
 // - stopping: from that set-point to standstill. It includes the delay of commands and joints, and the further motion
 //   of the joints. All of these make the arm lag behind its set-point. The bound is therefore the time by which the arm
 //   lags, minus the least lag of the joints themselves, plus their further motion.
-// - lateness: the additional delay of messages, or of this program, compared with the measured contacts.
+// - lateness: the additional delay of messages, or of this program, compared with the delay during the measured
+//   contacts.
 #pragma once
 
 #include <Eigen/Core>

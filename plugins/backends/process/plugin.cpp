@@ -172,7 +172,7 @@ class ChildProcessBackend final : public Backend {
   /// Starts the program. If taps are not repeatable, first waits until no program of an earlier attempt runs, because
   /// two programs must not move one arm. If such a program still runs at the end of `patience`, child_ stays empty.
   void start(const programs::WaitLimit& patience) const {
-    Descriptor lock;
+    FileDescriptor lock;
     if (!options_.repeatable && !context_.directory.empty()) {
       lock = programs::lock_file(recorded(kLock), patience);
       if (!lock) return;

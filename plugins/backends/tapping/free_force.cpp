@@ -6,8 +6,8 @@
 namespace palpate::tapping {
 namespace {
 
-/// Strength of the prior of the slope, m^2. It is added to the sum of squared heights: (noise of a reading / expected
-/// slope)^2 = (1.5 N / 50 N/m)^2.
+/// Strength of the prior of the slope: (noise of a reading / expected slope)^2 = (1.5 N / 50 N/m)^2, in m^2. It is
+/// added to the sum of squared heights.
 constexpr double kSlopePrior = 0.0009;
 /// Weight of the tare, as a number of readings. The tare dominates the line while there are few readings.
 constexpr double kTareWeight = 5.0;
@@ -19,7 +19,7 @@ void FreeForce::tare(double zero) {
   samples_.clear();
 }
 
-FreeForce::Line FreeForce::line(double height) const {
+FreeForce::LinearForce FreeForce::line(double height) const {
   double count = 0.0;
   double heights = 0.0;
   double forces = 0.0;
@@ -42,7 +42,7 @@ FreeForce::Line FreeForce::line(double height) const {
     square += (one.height - middle) * (one.height - middle);
     product += (one.height - middle) * (one.force - forces / count);
   }
-  Line out{level, middle, std::clamp(product / square, -kMostDrift, kMostDrift)};
+  LinearForce out{level, middle, std::clamp(product / square, -kMostDrift, kMostDrift)};
   const double most = kMostOffset + kMostDrift * std::max(0.0, top_ - height);
   out.force += std::clamp(out.at(height), tare_ - most, tare_ + most) - out.at(height);
   return out;

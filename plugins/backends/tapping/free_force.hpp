@@ -27,7 +27,7 @@ class FreeForce {
   void add(const Sample& sample) { samples_.push_back(sample); }
 
   /// Force without contact as a linear function of the height.
-  struct Line {
+  struct LinearForce {
     double force;   ///< N, at `height`
     double height;  ///< m
     double slope;   ///< N/m
@@ -39,7 +39,7 @@ class FreeForce {
   /// of the tare. The slope is at most kMostDrift in absolute value. At `height`, the line differs from the tare by at
   /// most kMostOffset + kMostDrift * (distance below `top`). Larger changes come from a soft object and not from the
   /// zero.
-  Line line(double height) const;
+  LinearForce line(double height) const;
 
   static constexpr double kLength = 0.03;     ///< m
   static constexpr double kMostDrift = 60.0;  ///< N/m

@@ -231,7 +231,7 @@ void GuardedTap::conclude_at_onset() {
 
 /// Returns onset and slope of a real arm's force relative to the line of free travel.
 GuardedTap::Rise GuardedTap::rise() const {
-  const FreeForce::Line free = free_.line(first_);
+  const FreeForce::LinearForce free = free_.line(first_);
   std::vector<Sample> above;
   for (const Sample& one : trace_) {
     if (one.height < first_ + 2.0 * kFarthestOnset) above.push_back({one.height, one.force - free.at(one.height)});

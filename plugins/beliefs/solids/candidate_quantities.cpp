@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "solids/candidate_quantities.hpp"
 
-#include "solids/reduction.hpp"
+#include "solids/expected_reduction.hpp"
 
 #include <algorithm>
 #include <cmath>

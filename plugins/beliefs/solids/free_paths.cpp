@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "solids/free_paths.hpp"
 
-#include "solids/nonnegative.hpp"
+#include "solids/nonnegative_least_squares.hpp"
 
 #include <algorithm>
 #include <cmath>

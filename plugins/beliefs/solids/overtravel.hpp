@@ -26,7 +26,7 @@ class Overtravel {
   /// `tip`: radius of the tool's round tip, metres. Contacts more than `most` above the desk are never with the desk.
   Overtravel(double tip, double most);
 
-  /// Adds a touch as the arm reported it, relative to the desk, with the force of its contact, newtons.
+  /// Adds a touch as the arm reported it; in `told`, z is 0 on the desk. `force`: force of the contact, newtons.
   void add(const SurfaceTouch& told, double force);
 
   /// Returns a touch with its corrected length and whether it ended on the desk.

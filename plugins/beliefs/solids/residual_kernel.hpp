@@ -2,8 +2,8 @@
 // The prior covariance of the residual GP, between values and slopes at places in space.
 #pragma once
 
-#include "gp/loops.hpp"
-#include "gp/panels.hpp"
+#include "gp/aligned_matrices.hpp"
+#include "gp/vector_loops.hpp"
 
 #include <palpate/kernel.hpp>
 #include <palpate/types.hpp>

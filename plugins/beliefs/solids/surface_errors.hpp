@@ -9,7 +9,7 @@
 #include "solids/residual_gp.hpp"
 #include "solids/volume.hpp"
 
-#include <palpate/errors.hpp>
+#include <palpate/reconstruction_errors.hpp>
 #include <palpate/scene.hpp>
 
 #include <Eigen/Core>

@@ -6,7 +6,8 @@
 namespace palpate::footprints {
 namespace {
 
-// Range of the axes of a fitted hole, as fractions of the form's axes.
+// Range of Primitive::along and Primitive::across: the size of a concentric hole, or of the part of a hole at a corner
+// that is inside the form, as fractions of the form's axes.
 constexpr double kLeastShare = 0.1;
 constexpr double kMostShare = 0.9;
 

@@ -72,8 +72,9 @@ struct Primitive {
   Form hole;  ///< valid if `hollow`
   bool hollow = false;
   HolePlacement fit = HolePlacement::free;
-  // Parameters of a fitted hole. `along` and `across` are its size as fractions of the form's axes (only `along` if
-  // concentric). `side_a` and `side_b`, +1 or -1, select the corner of the form.
+  // Parameters of a fitted hole, which is concentric or at a corner. `along` and `across` are the size of its part
+  // inside the form, as fractions of the form's axes (only `along` if concentric). `side_a` and `side_b`, +1 or -1,
+  // select the corner of the form.
   double along = 0.0, across = 0.0;
   int side_a = 1, side_b = 1;
   double density = 0.0;  ///< cached Prior::density() of the primitive
@@ -92,7 +93,7 @@ struct Primitive {
     return dx * dx + dy * dy <= 2.0 * (form.a * form.a + form.b * form.b + margin * margin);
   }
 
-  /// Returns whether the hole depends on the form; fit_hole() computes such a hole.
+  /// Returns whether the hole is concentric or at a corner; fit_hole() computes such a hole from the form.
   bool fitted() const { return hollow && fit != HolePlacement::free; }
   void fit_hole();
   /// Swaps the form's axes if `b` is longer; the covered region is unchanged.
@@ -167,9 +168,9 @@ struct Hypothesis {
 /// limits the axes of forms, but not of free holes. Priors of push and noise are in sampler.hpp. Most ellipses are
 /// nearly round: the logarithm of the short half axis is uniform, and the long half axis is up to 6 % longer. Only
 /// primitives that are at least twice as long as `min_width` have holes. A free hole has its centre on the primitive,
-/// and half axes from half of `min_width` to the long half axis of the primitive. The axes of a fitted hole are 0.1 to
-/// 0.9 of the form's axes. In an ellipse, a fitted hole is concentric; in a box, it is concentric or at a corner, with
-/// equal probability.
+/// and half axes from half of `min_width` to the long half axis of the primitive. The part of a fitted hole
+/// (Primitive::fitted()) inside the form has 0.1 to 0.9 of the form's axes. In an ellipse, a fitted hole is concentric;
+/// in a box, it is concentric or at a corner, with equal probability.
 class Prior {
  public:
   struct Settings {

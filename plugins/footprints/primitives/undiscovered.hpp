@@ -44,9 +44,9 @@ class UndiscoveredPrimitives {
   /// changes the probability of an object by at most 0.01. The change is at most 0.1 if the contacts with the known
   /// primitive are all near its rim, within the noise.
   ///
-  /// One process serves exact and noisy hypotheses. With position noise, `labels` is the model of noisy ones. The
-  /// expected number of primitives is then 0.012 smaller on average (at most 0.026 in 40 scenes of 40 taps). The odds
-  /// of noisy against exact positions should include the factor exp(this difference), but omit it.
+  /// One process serves exact and noisy hypotheses. With position noise, `labels` is the label model of the noisy
+  /// hypotheses. The expected number of primitives is then 0.012 smaller on average (at most 0.026 in 40 scenes of 40
+  /// taps). The odds of noisy against exact positions should include the factor exp(this difference), but omit it.
   void add(const Touch& touch, const LabelModel& labels);
 
   /// Prepares grid(), rates() and expected_extent() for positions, M x 2 metres. Returns whether they differ from the

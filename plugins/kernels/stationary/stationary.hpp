@@ -2,7 +2,7 @@
 // Common part of the stationary kernels: length scales, and the covariance as a function of the scaled distance.
 #pragma once
 
-#include "kernels/stationary/pairs.hpp"
+#include "kernels/stationary/squared_distances.hpp"
 
 #include <palpate/kernel.hpp>
 #include <palpate/math.hpp>

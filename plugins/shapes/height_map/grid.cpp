@@ -81,19 +81,19 @@ Grid from_csv(std::string bytes, const std::string& file) {
 }
 
 /// Number types of NPY, without their byte order.
-constexpr std::array<std::pair<const char*, BinaryNumber>, 10> kScalars{{{"f4", binary_number<float>()},
-                                                                         {"f8", binary_number<double>()},
-                                                                         {"i1", binary_number<std::int8_t>()},
-                                                                         {"u1", binary_number<std::uint8_t>()},
-                                                                         {"i2", binary_number<std::int16_t>()},
-                                                                         {"u2", binary_number<std::uint16_t>()},
-                                                                         {"i4", binary_number<std::int32_t>()},
-                                                                         {"u4", binary_number<std::uint32_t>()},
-                                                                         {"i8", binary_number<std::int64_t>()},
-                                                                         {"u8", binary_number<std::uint64_t>()}}};
+constexpr std::array<std::pair<const char*, BinaryNumberType>, 10> kScalars{{{"f4", binary_number<float>()},
+                                                                             {"f8", binary_number<double>()},
+                                                                             {"i1", binary_number<std::int8_t>()},
+                                                                             {"u1", binary_number<std::uint8_t>()},
+                                                                             {"i2", binary_number<std::int16_t>()},
+                                                                             {"u2", binary_number<std::uint16_t>()},
+                                                                             {"i4", binary_number<std::int32_t>()},
+                                                                             {"u4", binary_number<std::uint32_t>()},
+                                                                             {"i8", binary_number<std::int64_t>()},
+                                                                             {"u8", binary_number<std::uint64_t>()}}};
 
 /// Returns the number type with this name. Returns null if it is not supported.
-const BinaryNumber* scalar_named(const std::string& type) {
+const BinaryNumberType* scalar_named(const std::string& type) {
   if (type.empty() || std::string_view("<>|=").find(type.front()) == std::string_view::npos) return nullptr;
   const auto* const found = std::find_if(kScalars.begin(), kScalars.end(),
                                          [&](const auto& one) { return type.compare(1, type.npos, one.first) == 0; });
@@ -109,7 +109,7 @@ Grid from_npy(const std::string& bytes, const std::string& file) {
   const NpyHeader header = read_npy_header(std::string_view(bytes).substr(place->begin, place->length));
   if (header.sizes.size() != 2) throw Error(file, "does not have two dimensions", "save an array of rows and columns");
   const bool by_columns = header.order == "True";
-  const BinaryNumber* const scalar = by_columns || header.order == "False" ? scalar_named(header.type) : nullptr;
+  const BinaryNumberType* const scalar = by_columns || header.order == "False" ? scalar_named(header.type) : nullptr;
   if (scalar == nullptr)
     throw Error(file, "has values of an unsupported type", "save it as float64: array.astype(float)");
   const std::uint64_t rows = header.sizes[0];

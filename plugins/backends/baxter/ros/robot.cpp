@@ -2,7 +2,7 @@
 #include "baxter/error_texts.hpp"
 #include "baxter/ros/bag.hpp"
 #include "baxter/ros/connection.hpp"
-#include "baxter/ros/heartbeat.hpp"
+#include "baxter/ros/thread_gaps.hpp"
 
 #include <algorithm>
 #include <atomic>

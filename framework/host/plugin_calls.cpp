@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "host/plugin_errors.hpp"
+#include "host/plugin_calls.hpp"
 
 #include <palpate/acquisition.hpp>
 #include <palpate/backend.hpp>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "record/resolved.hpp"
+#include "record/resolved_config.hpp"
 
 #include "config/hash.hpp"
 #include "config/quantity.hpp"

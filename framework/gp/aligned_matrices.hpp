@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Memory for the loops of loops.hpp: arrays aligned to cache lines, and matrices that grow by rows.
+// Memory for the loops of vector_loops.hpp: arrays aligned to cache lines, and matrices that grow by rows.
 #pragma once
 
-#include "gp/loops.hpp"
+#include "gp/vector_loops.hpp"
 
 #include <algorithm>
 #include <cstddef>

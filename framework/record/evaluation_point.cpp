@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include "record/checkpoint.hpp"
+#include "record/evaluation_point.hpp"
 
+#include "config/comparison.hpp"
 #include "config/compose.hpp"
 #include "config/quantity.hpp"
-#include "config/relation.hpp"
 #include "record/fields.hpp"
 
 #include <palpate/error.hpp>

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "host/host.hpp"
+#include "host/plugin_host.hpp"
 
 #include "config/describe.hpp"
 #include "config/tree.hpp"
 #include "host/builtin.hpp"
 #include "host/loaded_hash.hpp"
-#include "host/plugin_errors.hpp"
+#include "host/plugin_calls.hpp"
 #include "reading/read_file.hpp"
 
 #include <palpate/acquisition.hpp>

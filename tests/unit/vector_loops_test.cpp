@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The hot loops, on every instruction set that this processor has, against the same sums written down plainly.
-#include "gp/panels.hpp"
+#include "gp/aligned_matrices.hpp"
 #include "support/instruction_sets.hpp"
 #include "support/sanitizers.hpp"
 #include "support/testing.hpp"
@@ -30,7 +30,7 @@ class Loops : public testing::TestWithParam<Instructions> {
   Random random_{3, "loops_test"};
 };
 
-/// A product of a shape, and what it is, cell by cell in the order of loops.hpp.
+/// A product of a shape, and what it is, cell by cell in the order of vector_loops.hpp.
 struct Trial {
   Trial(int rows, int columns, int depth, Random& random)
       : a(static_cast<std::size_t>(rows * depth * kStripRows)), b(columns, kPanelLines * kLine, kLine) {

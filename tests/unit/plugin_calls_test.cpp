@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Whatever a plugin's functions throw, whichever of them it was, is told with its name.
-#include "host/plugin_errors.hpp"
+#include "host/plugin_calls.hpp"
 
 #include "support/testing.hpp"
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // What satisfies a condition: the one rule, and that everything in core asks it.
-#include "config/relation.hpp"
+#include "config/comparison.hpp"
 
-#include "record/checkpoint.hpp"
+#include "record/evaluation_point.hpp"
 #include "record/json.hpp"
 #include "support/testing.hpp"
 

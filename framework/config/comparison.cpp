@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "config/relation.hpp"
+#include "config/comparison.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "solids/reduction.hpp"
+#include "solids/expected_reduction.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "gp/loops.hpp"
+#include "gp/vector_loops.hpp"
 
 #include <algorithm>
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "gp/loops.cpp"
+#define HWY_TARGET_INCLUDE "gp/vector_loops.cpp"
 #include "math/highway.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -109,8 +109,8 @@ struct PlainTiles {
   }
 };
 
-/// Tiles of a product with mirror images. A tile of registers has half of the rows, because each cell has two sums,
-/// even and odd.
+/// Tiles of a product with mirror images. A tile of registers has half as many rows as in PlainTiles, because each cell
+/// needs registers for two sums: over the even and over the odd functions.
 struct MirroredTiles {
   const MirroredProduct& whole;
   const StripProduct& product = whole.half;

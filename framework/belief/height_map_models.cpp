@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "belief/height_models.hpp"
+#include "belief/height_map_models.hpp"
 
 #include "config/tree.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "host/host.hpp"
+#include "host/plugin_host.hpp"
 
 #include "config/describe.hpp"
 #include "support/programs.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Shipped configs, resolved: their ids, and what they refuse.
-#include "record/resolved.hpp"
+#include "record/resolved_config.hpp"
 
 #include "config/yaml.hpp"
 #include "support/runs.hpp"

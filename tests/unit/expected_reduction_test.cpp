@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What a poke is expected to take off the deviation of a surface, against the formulas for normal distributions.
-#include "solids/reduction.hpp"
+#include "solids/expected_reduction.hpp"
 
 #include "support/shape_laws.hpp"
 #include "support/support.hpp"
@@ -61,7 +61,7 @@ class Reductions : public testing::Test {
     const double far = solids.best().distance(at) - one.distance(at);
     return std::max(-0.02, std::min(0.02, far));
   }
-  /// The covariance of what is off, contacts first, as reduction.hpp has it.
+  /// The covariance of what is off, contacts first, as expected_reduction.hpp has it.
   MatrixXd covariance(const ResidualGp::Places& at) const {
     std::vector<ResidualGp::ResidualDatum> rows(at.size());
     std::transform(at.begin(), at.end(), rows.begin(),

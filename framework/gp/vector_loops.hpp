@@ -46,10 +46,10 @@ struct StripProduct {
 };
 
 /// Product on a grid that is symmetric in its columns. The first `even` rows of B are the left halves of even functions
-/// of the column; the other rows are the left halves of odd functions. Let E and O be the sums over the even and the
-/// odd rows. Then v is E + O in the left half of the grid, and the mirror image of E - O in the right half. This takes
-/// half of the multiplications of a product over all columns. The cells of a tile's mirror image are `mirror` cells
-/// after the tile, in the same order.
+/// of the column; the other rows are the left halves of odd functions. Let E be the part of the product A B from the
+/// first `even` rows of B, and O the part from the other rows. Then v is E + O in the left half of the grid, and the
+/// mirror image of E - O in the right half. This takes half of the multiplications of a product over all columns. The
+/// cells of a tile's mirror image are `mirror` cells after the tile, in the same order.
 struct MirroredProduct {
   StripProduct half;
   int even;

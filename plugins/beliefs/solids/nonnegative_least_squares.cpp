@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "solids/nonnegative.hpp"
+#include "solids/nonnegative_least_squares.hpp"
 
 #include <cmath>
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "kernels/stationary/pairs.hpp"
+#include "kernels/stationary/squared_distances.hpp"
 
 #include <algorithm>
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "kernels/stationary/pairs.cpp"
+#define HWY_TARGET_INCLUDE "kernels/stationary/squared_distances.cpp"
 #include "math/highway.hpp"
 
 HWY_BEFORE_NAMESPACE();
