@@ -10,7 +10,13 @@
 namespace palpate {
 namespace {
 
-constexpr double kPriorSeeds = 4.0;  ///< weight of the variance of other settings, in degrees of freedom
+constexpr double kMostPriorSeeds = 4.0;
+
+/// Returns the weight of the variance of the other settings, in degrees of freedom. It is 0 if there are only two
+/// settings, whose single variance says nothing more than itself.
+double prior_seeds(const RaceTable& table) {
+  return std::min(kMostPriorSeeds, static_cast<double>(table.size()) - 2.0);
+}
 
 /// Paired differences of one setting to the best one.
 struct Difference {
@@ -37,8 +43,8 @@ std::vector<Difference> differences(const RaceTable& table) {
   for (std::size_t i = 0; i < (out.size() + 1) / 2; ++i) better.push_back(out[i].variance);
   std::sort(better.begin(), better.end());
   const double typical = quantile(better, 0.5);
-  for (Difference& one : out)
-    one.variance = ((seeds - 1.0) * one.variance + kPriorSeeds * typical) / (seeds - 1.0 + kPriorSeeds);
+  const double prior = prior_seeds(table);
+  for (Difference& one : out) one.variance = ((seeds - 1.0) * one.variance + prior * typical) / (seeds - 1.0 + prior);
   return out;
 }
 
@@ -62,7 +68,7 @@ std::vector<Loser> find_losers(const RaceTable& table, double alpha, std::size_t
   for (auto one = all.rbegin(); one != all.rend() && table.size() - out.size() > keep; ++one) {
     if (!(one->mean > 0.0)) continue;
     const double error = std::sqrt(one->variance / seeds);
-    const double p = error > 0.0 ? student_tail(one->mean / error, seeds - 1.0 + kPriorSeeds) : 0.0;
+    const double p = error > 0.0 ? student_tail(one->mean / error, seeds - 1.0 + prior_seeds(table)) : 0.0;
     if (p < alpha) out.push_back({one->row, table.front().size(), one->mean, p});
   }
   return out;
@@ -71,7 +77,7 @@ std::vector<Loser> find_losers(const RaceTable& table, double alpha, std::size_t
 double largest_disadvantage(const RaceTable& table) {
   if (table.size() < 2) return 0.0;
   const auto seeds = static_cast<double>(table.front().size());
-  const double factor = student_quantile(0.95, seeds - 1.0 + kPriorSeeds);
+  const double factor = student_quantile(0.95, seeds - 1.0 + prior_seeds(table));
   double out = 0.0;
   for (const Difference& one : differences(table))
     out = std::max(out, one.mean + factor * std::sqrt(one.variance / seeds));

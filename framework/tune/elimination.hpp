@@ -30,8 +30,9 @@ std::vector<std::size_t> ranked(const RaceTable& table);
 /// The test is a t test with a moderated variance (Smyth 2004, Linear models and empirical Bayes methods, Statistical
 /// Applications in Genetics and Molecular Biology 3): the variance s^2 of the differences of a setting on k seeds
 /// becomes
-/// ((k - 1) s^2 + 4 v) / (k + 3), where v is the median of s^2 over the better half of the settings. It has k + 3
-/// degrees of freedom. A plain t test on 4 seeds drops good settings whose differences vary little by chance.
+/// ((k - 1) s^2 + m v) / (k - 1 + m), where v is the median of s^2 over the better half of the settings. It has k - 1 +
+/// m degrees of freedom; m is 4, or the number of settings less 2 if this is smaller. A plain t test on 4 seeds drops
+/// good settings whose differences vary little by chance.
 std::vector<Loser> find_losers(const RaceTable& table, double alpha, std::size_t keep);
 
 /// Returns an upper bound on the disadvantage of any setting: the largest upper end of the one-sided 95 % interval of

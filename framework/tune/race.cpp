@@ -42,7 +42,8 @@ void drop_losers(const RaceRules& rules, const RaceTable& results, RaceDecision&
   const double alpha = rules.is_search ? kAlphaOfSearch : kAlphaOfLists;
   for (Loser one : find_losers(racing_table(state, results), alpha, keep)) {
     one.row = state.racing[one.row];
-    decision.losers.push_back(one);
+    // A setting of an earlier stage is not dropped before it was compared on all of its seeds.
+    if (results[one.row].size() <= state.seeds) decision.losers.push_back(one);
   }
   for (const Loser& one : decision.losers) {
     state.racing.erase(std::remove(state.racing.begin(), state.racing.end(), one.row), state.racing.end());
@@ -56,13 +57,15 @@ void begin_stage(const RaceTable& results, std::size_t budget, std::size_t jobs,
   elites.resize(std::min(elites.size(), kElites));
   const double left =
       static_cast<double>(budget) - static_cast<double>(jobs) - kLastShare * static_cast<double>(budget);
-  ++state.stage;
-  const double share = state.stage < kLastStage ? left / static_cast<double>(kLastStage - state.stage) : 0.0;
-  const auto joining = static_cast<std::size_t>(std::max(0.0, std::floor(share / kJobsPerSetting)));
+  // With a small budget, stages are left out, so that at least two settings join in each.
+  const auto affordable = static_cast<std::size_t>(std::max(0.0, left / (2.0 * kJobsPerSetting)));
+  const std::size_t stages = std::min(kLastStage - state.stage - 1, affordable);
+  state.stage = kLastStage - stages;
+  const double share = stages > 0 ? left / static_cast<double>(stages) : 0.0;
+  const auto joining = static_cast<std::size_t>(share / kJobsPerSetting);
   state.racing = elites;
   std::sort(state.racing.begin(), state.racing.end());
-  if (joining == 0) {
-    state.stage = kLastStage;
+  if (stages == 0) {
     state.stage_end = budget;
     return;
   }

@@ -36,7 +36,7 @@ constexpr const char* kWinner = "winner";
 constexpr std::size_t kLeastBudget = 60;  ///< of a search: six settings on four seeds, and the stages after them
 constexpr std::size_t kDrawsPerSetting = 20;
 
-Row round_row(const RaceDecision& decision, double seconds) {
+Row round_row(const RaceDecision& decision, std::optional<double> seconds) {
   Row row;
   const RaceState& state = decision.state;
   row.add(kStage, static_cast<std::int64_t>(state.stage));
@@ -52,7 +52,7 @@ Row round_row(const RaceDecision& decision, double seconds) {
     loser.add("p", one.p);
   }
   row.add(kDropped, list_of(dropped));
-  row.add(kSeconds, seconds);
+  if (seconds) row.add(kSeconds, *seconds);
   if (decision.end.empty()) return row;
   row.add(kEnd, decision.end);
   row.add(kWinner, static_cast<std::int64_t>(decision.winner));
@@ -302,7 +302,7 @@ SweepPlan plan_first_round(const TunePlanner& planner, std::size_t budget, const
   RaceDecision decision;
   decision.state.stage_end = first_stage_end({is_search, 0.0}, budget);
   for (std::size_t i = 0; i < plan.sweep.jobs.size() / kFirstSeeds; ++i) decision.state.racing.push_back(i);
-  plan.sweep.rounds.push_back({plan.sweep.jobs.size(), round_row(decision, 0.0)});
+  plan.sweep.rounds.push_back({plan.sweep.jobs.size(), round_row(decision, std::nullopt)});
   plan.sweep.directory = race_directory(planner, runs);
   return plan;
 }
@@ -352,7 +352,8 @@ bool add_round(const TunePlanner& planner, const fs::path& directory, std::size_
       continue;
     }
     decision.losers = losers;
-    append_round(sweep, jobs, round_row(decision, seconds));
+    // The decisions of a race with a budget in runs do not depend on time, so its manifest has no times.
+    append_round(sweep, jobs, round_row(decision, description.seconds ? std::optional(seconds) : std::nullopt));
     return true;
   }
 }

@@ -30,7 +30,7 @@ struct RaceRecord {
   std::size_t winner = 0;                                  ///< only if it ended
   std::vector<std::size_t> fresh_of_winner, fresh_of_own;  ///< jobs on fresh seeds, in the order of the seeds
   std::size_t race_jobs = 0;                               ///< number of jobs without those on fresh seeds
-  double seconds = 0.0;                                    ///< wall time of the race until the last decision
+  double seconds = 0.0;  ///< wall time until the last decision, if the budget is a time; else 0
 
   bool has_ended() const { return !end.empty(); }
 };

@@ -151,13 +151,14 @@ TEST(Sobol, SpreadsALogarithmicRangeInTheLogarithmAndKeepsToItsEnds) {
 }
 
 TEST(Sobol, RefusesWhatIsNoContinuousRange) {
-  const std::string how_to = ", write uniform(0.1 mm, 1 mm) or log_uniform(1 cm, 10 cm), both ends with the same unit";
+  const std::string how_to = ", write uniform(0.1 mm, 1 mm) or log_uniform(1 cm, 10 cm), with a unit at both ends";
   const auto line = [](const std::string& range) {
     return refused("\n  sobol: {samples: 4, keys: {a: " + range + "}}");
   };
-  EXPECT_EQ(line("'uniform(1 cm, 20 mm)'"),
-            "c.yaml:2:33: a: 'uniform(1 cm, 20 mm)' has ends with different units" + how_to);
-  EXPECT_EQ(line("'uniform(1, 2 cm)'"), "c.yaml:2:33: a: 'uniform(1, 2 cm)' has ends with different units" + how_to);
+  EXPECT_EQ(line("'uniform(1 cm, 20 s)'"),
+            "c.yaml:2:33: a: 'uniform(1 cm, 20 s)' has ends with units of different dimensions" + how_to);
+  EXPECT_EQ(line("'uniform(1, 2 cm)'"),
+            "c.yaml:2:33: a: 'uniform(1, 2 cm)' has ends with units of different dimensions" + how_to);
   EXPECT_EQ(line("'uniform(2, 1)'"),
             "c.yaml:2:33: a: 'uniform(2, 1)' is not a range, the first end must be below the last");
   EXPECT_EQ(line("'uniform(1, 1)'"),

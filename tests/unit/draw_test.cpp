@@ -147,7 +147,7 @@ TEST(Draw, RefusesWhatNoObjectMayBeEvenIfThisSeedDoesNotDrawIt) {
 }
 
 TEST(Draw, RefusesRangesThatAreNone) {
-  const std::string how = ", write uniform(0.1 mm, 1 mm) or log_uniform(1 cm, 10 cm), both ends with the same unit";
+  const std::string how = ", write uniform(0.1 mm, 1 mm) or log_uniform(1 cm, 10 cm), with a unit at both ends";
   const auto of_length = [](const std::string& value) { return drawn_from("{type: block, length: " + value + "}"); };
   const std::string at = "c.yaml:3:58: scene.objects.draw.of.0.length: ";
   EXPECT_EQ(of_length("\"uniform(8 mm)\""), at + "'uniform(8 mm)' does not have two ends" + how);
