@@ -41,8 +41,9 @@ LaunchOptions launch_options(const SweepExecution& execution) {
 void print_next_commands(const SweepExecution& execution, const Launcher& launcher) {
   const std::string directory = shell_word(std::filesystem::absolute(execution.sweep.directory).string());
   print_out("watch progress with: palpate status {}\n", directory);
-  print_out("run missing jobs afterwards with: palpate resume {} --launcher {}\n", directory,
-            execution.launch.launcher);
+  if (execution.next.empty())
+    print_out("run missing jobs afterwards with: palpate resume {} --launcher {}\n", directory,
+              execution.launch.launcher);
   print_out("stop: {}\n", launcher.stop_command());
 }
 
@@ -119,6 +120,7 @@ LaunchOutcome launch_open(const SweepExecution& execution, const JobStates& begu
     if (begun.open.empty() || program.interrupted->load()) return LaunchOutcome::ended;  // There is nothing to submit.
     if (!execution.launch.wait) {
       launcher->submit(begun.open);
+      if (!execution.next.empty()) launcher->continue_with(execution.next);
       print_next_commands(execution, *launcher);
       return LaunchOutcome::submitted;
     }

@@ -27,6 +27,8 @@ struct SweepExecution {
   bool one_at_a_time = false;     ///< whether a backend moves something that exists only once, such as an arm
   /// For `palpate sweep`, the config of the first job with the current expectations; nullopt for `palpate resume`.
   std::optional<ResolvedConfig> first = std::nullopt;
+  /// Words of a `palpate` command that a cluster executes after the jobs; empty if there is none.
+  std::vector<std::string> next = {};
 };
 
 /// Returns all jobs for which this process is responsible, including finished ones.

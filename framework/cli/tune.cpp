@@ -107,6 +107,25 @@ class RaceLine {
   std::size_t tenth_ = 11;
 };
 
+/// Returns the words with which a cluster continues the race after a round.
+std::vector<std::string> next_command(const fs::path& directory, const LaunchArguments& launch,
+                                      const ResumeOptions& options) {
+  if (!is_cluster(launch.launcher)) return {};
+  std::vector<std::string> out{"resume",     fs::absolute(directory).string(), "--launcher", launch.launcher,
+                               "--attempts", std::to_string(launch.attempts)};
+  const auto add = [&](const char* name, const std::string& value) {
+    if (!value.empty()) out.insert(out.end(), {name, value});
+  };
+  add("-j", launch.workers ? std::to_string(*launch.workers) : "");
+  add("--partition", launch.cluster.partition);
+  add("--task-time", launch.cluster.time);
+  add("--account", launch.cluster.account);
+  add("--jobs-per-task", launch.jobs_per_task ? std::to_string(*launch.jobs_per_task) : "");
+  for (const std::string& word : launch.cluster.words) out.push_back("--sbatch=" + word);
+  if (options.force) out.emplace_back("--force");
+  return out;
+}
+
 /// Prints the results, and writes results.csv, race.csv and best.yaml.
 void print_race(const RaceResults& results) {
   const fs::path& directory = results.sweep.directory;
@@ -137,7 +156,7 @@ int run_race(CommandEnvironment& program, const fs::path& directory, const Launc
     const double seconds = before + seconds_since(begin);
     const std::size_t budget = budget_of(description, race.race_jobs, seconds);
     line.show(race, budget);
-    SweepExecution execution{program, sweep, options, silent, {}, false};
+    SweepExecution execution{program, sweep, options, silent, {}, false, {}, next_command(directory, launch, options)};
     std::vector<std::size_t> jobs = all_jobs(sweep);
     jobs.erase(jobs.begin(), jobs.begin() + static_cast<std::ptrdiff_t>(values.size()));
     JobStates begun = read_job_states(sweep, jobs);
@@ -181,8 +200,9 @@ int tune(CommandEnvironment& program, const TuneArguments& arguments) {
   listen_for_interrupts();
   std::optional<SweepDraft> draft(arguments.runs);
   double seconds = 0.0;
-  // The taps of a robot cannot be repeated, so its runs belong to the race only.
-  if (!program.host.one_at_a_time(planner.own().notes.plugins)) seconds = try_metric(program, planner, *draft);
+  // An arm moves only for the race itself, and the jobs of a cluster do not run on its login node.
+  if (!is_cluster(arguments.launch.launcher) && !program.host.one_at_a_time(planner.own().notes.plugins))
+    seconds = try_metric(program, planner, *draft);
   if (program.interrupted->load()) return kInterrupted;
   const int workers = arguments.launch.workers.value_or(cores());
   const std::size_t budget = seconds > 0.0 ? budget_of(description, static_cast<std::size_t>(workers), seconds)

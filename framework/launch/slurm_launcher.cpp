@@ -30,6 +30,7 @@ namespace {
 
 constexpr const char* kScript = "task.sh";
 constexpr const char* kJobs = "jobs";
+constexpr const char* kNext = "next.sh";
 constexpr std::chrono::minutes kMostSilence{10};
 constexpr std::chrono::seconds kPause{1};  ///< shortest time between two queries of the queue
 constexpr std::chrono::seconds kMostPause{60};
@@ -53,6 +54,24 @@ constexpr std::array<ReservedOption, 10> kReservedOptions{
      {"--wrap", "--wrap", "palpate itself sets the command of a task"},
      {"--parsable", "--parsable", "leave it out"}}};
 
+/// Returns the lines that give a script the folder and the environment of this process.
+std::string script_head() {
+  std::string out = fmt::format("cd {}\n", shell_word(fs::current_path().string()));  // for relative paths of plugins
+  for (const char* name : {"PALPATE_PLUGIN_PATH", "PALPATE_INSTRUCTIONS"}) {
+    const char* const value = std::getenv(name);
+    out += value != nullptr ? fmt::format("export {}={}\n", name, shell_word(value)) : fmt::format("unset {}\n", name);
+  }
+  return out;
+}
+
+/// Returns a script that executes `palpate` with these words.
+std::string command_script(const fs::path& program, const std::vector<std::string>& words) {
+  std::string out = "#!/bin/sh\n# Decides the next round of a race and submits its jobs.\n" + script_head() + "exec " +
+                    shell_word(program.string());
+  for (const std::string& word : words) out += " " + shell_word(word);
+  return out + "\n";
+}
+
 class SlurmLauncher final : public Launcher {
  public:
   /// The nodes must share the file system of the program and the sweep. Submitted tasks outlive this object.
@@ -64,7 +83,8 @@ class SlurmLauncher final : public Launcher {
   void submit(const std::vector<std::size_t>& jobs) override {
     if (jobs.empty()) return;
     const auto most = static_cast<std::size_t>(slurm::most_tasks());
-    const fs::path folder = make_folder();
+    folder_ = make_folder();
+    const fs::path& folder = folder_;
     const auto each = static_cast<std::size_t>(order_.options.jobs_per_task);
     const std::size_t tasks = (jobs.size() + each - 1) / each;
     const auto begin_of = [&](std::size_t task) { return std::min(task * each, jobs.size()); };
@@ -109,6 +129,15 @@ class SlurmLauncher final : public Launcher {
     if (!open_.empty() && !queued_.empty()) slurm::cancel({queued_.begin(), queued_.end()});
   }
 
+  void continue_with(const std::vector<std::string>& words) override {
+    if (arrays_.empty()) return;
+    write_file(folder_ / kNext, command_script(order_.environment.installation.program, words));
+    std::vector<std::string> options =
+        cluster_words(folder_, fmt::format("--dependency=afterany:{}", fmt::join(arrays_, ":")));
+    options.push_back((folder_ / kNext).string());
+    arrays_.push_back(slurm::submit(options).array);
+  }
+
   std::string stop_command() const override { return fmt::format("scancel {}", fmt::join(arrays_, " ")); }
 
  private:
@@ -133,23 +162,29 @@ class SlurmLauncher final : public Launcher {
   /// Returns the arguments of sbatch for an array of `count` tasks, from task `first` on.
   std::vector<std::string> words_for(std::size_t first, std::size_t count, const fs::path& folder) const {
     const bool one_at_a_time = order_.options.one_at_a_time;
-    const ClusterOptions& cluster = order_.options.cluster;
-    std::vector<std::string> words;
-    if (!cluster.partition.empty()) words.push_back("--partition=" + cluster.partition);
-    if (!cluster.time.empty()) words.push_back("--time=" + cluster.time);
-    if (!cluster.account.empty()) words.push_back("--account=" + cluster.account);
-    // The user's words come before --array. If a user forgets the value of an option, it takes --array as its value,
-    // and all tasks fail at once.
-    words.insert(words.end(), cluster.words.begin(), cluster.words.end());
-    words.push_back(fmt::format("--array=0-{}{}", count - 1, one_at_a_time ? "%1" : ""));
-    words.push_back(fmt::format("--job-name={}", directory_.parent_path().filename().string()));
-    // Slurm replaces %A and %a in a file name; %% is a percent sign.
-    words.push_back(fmt::format("--output={}/%A_%a.log", boost::replace_all_copy(folder.string(), "%", "%%")));
+    std::vector<std::string> words =
+        cluster_words(folder, fmt::format("--array=0-{}{}", count - 1, one_at_a_time ? "%1" : ""));
     words.push_back(fmt::format("--cpus-per-task={}", order_.options.workers));
     // The limit %1 holds within one array only, so each array waits for the end of the previous array.
     if (one_at_a_time && !arrays_.empty()) words.push_back(fmt::format("--dependency=afterany:{}", arrays_.back()));
     words.push_back((folder / kScript).string());
     words.push_back(std::to_string(first));
+    return words;
+  }
+
+  /// Returns the arguments of sbatch that all submissions share, and `own` behind those of the user. If a user forgets
+  /// the value of an option, it takes `own` as its value, and the submission or all of its tasks fail at once.
+  std::vector<std::string> cluster_words(const fs::path& folder, const std::string& own) const {
+    const ClusterOptions& cluster = order_.options.cluster;
+    std::vector<std::string> words;
+    if (!cluster.partition.empty()) words.push_back("--partition=" + cluster.partition);
+    if (!cluster.time.empty()) words.push_back("--time=" + cluster.time);
+    if (!cluster.account.empty()) words.push_back("--account=" + cluster.account);
+    words.insert(words.end(), cluster.words.begin(), cluster.words.end());
+    words.push_back(own);
+    words.push_back(fmt::format("--job-name={}", directory_.parent_path().filename().string()));
+    // Slurm replaces %A and %a in a file name; %% is a percent sign.
+    words.push_back(fmt::format("--output={}/%A_%a.log", boost::replace_all_copy(folder.string(), "%", "%%")));
     return words;
   }
 
@@ -186,6 +221,7 @@ class SlurmLauncher final : public Launcher {
 
   LauncherSetup order_;
   fs::path directory_ = absolute(order_.sweep.directory / "").lexically_normal().parent_path();
+  fs::path folder_;  ///< folder of the scripts and logs
   std::vector<int> arrays_;
   std::vector<std::size_t> open_;          ///< jobs that have not been returned
   std::set<int> queued_;                   ///< arrays that had tasks in the queue at the last query
@@ -222,13 +258,8 @@ std::string task_script(const fs::path& program, const fs::path& directory, cons
   std::string out =
       "#!/bin/sh\n# A task of a Slurm array resumes the jobs of the sweep that one line of a list names. The line "
       "number is the first\n# argument, 0 if absent, plus the array index. Jobs that are done or held by another "
-      "process are skipped.\n";
-  out += fmt::format("cd {}\n",
-                     shell_word(fs::current_path().string()));  // relative paths of plugins refer to this folder
-  for (const char* name : {"PALPATE_PLUGIN_PATH", "PALPATE_INSTRUCTIONS"}) {
-    const char* const value = std::getenv(name);
-    out += value != nullptr ? fmt::format("export {}={}\n", name, shell_word(value)) : fmt::format("unset {}\n", name);
-  }
+      "process are skipped.\n" +
+      script_head();
   out += fmt::format("jobs=$(sed -n \"$((${{1:-0}} + SLURM_ARRAY_TASK_ID + 1))p\" {})\n", shell_word(jobs.string()));
   out +=
       fmt::format("exec {} resume {} --jobs \"${{jobs:?there is no such task}}\" -j {} --attempts {} --quiet{}{}\n",

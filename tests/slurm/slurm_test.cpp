@@ -273,6 +273,32 @@ TEST_F(Slurm, WhatCannotBeSubmittedIsSaidInOneLineAndNothingIsLeftInTheQueue) {
   EXPECT_EQ(attempts_in(sweep_in(lab.folder())), std::vector<int>(2, 0));
 }
 
+TEST_F(Slurm, ARaceGoesOnByItselfAndALostTaskDoesNotChangeItsDecisions) {
+  const SlurmLab lab;
+  const std::vector<std::string> words{
+      "tune", paper(), kPace, "kernel.length_scale=2cm,3cm", "--metric", "rmse_m", "--jobs", "16", "--fresh", "5"};
+  const Ended submitted = lab.palpate(on_slurm(words));
+  ASSERT_EQ(submitted.status, 0) << submitted.err;
+  const Sweep first = sweep_in(lab.folder());
+  ASSERT_EQ(first.rounds.size(), 1U);
+  EXPECT_EQ(first.jobs.size(), 12U) << "three settings on four seeds";
+  const fs::path victim = job_at(first, 2);
+  ASSERT_TRUE(eventually([&] { return recorded(victim) >= 3; }));
+  ASSERT_EQ(::kill(parent_of(number_at(rows_of(victim, "attempt").front(), "pid")), SIGKILL), 0);
+  const auto has_ended = [&] { return fs::exists(first.directory / "best.yaml"); };
+  ASSERT_TRUE(eventually(has_ended)) << lab.run({"squeue"}).out;
+  ASSERT_TRUE(lab.becomes_idle());
+  EXPECT_EQ(lines(part_of(victim, "attempt")), 2) << "the killed job was submitted again";
+  EXPECT_GE(sweep_in(lab.folder()).rounds.size(), 3U);
+
+  std::vector<std::string> here = words;
+  here.insert(here.end(), {"--runs", "here", "-j", "8"});
+  ASSERT_EQ(lab.palpate(here).status, 0);
+  const fs::path local = only_run(lab.folder() / "here");
+  EXPECT_EQ(text_of(first.directory / "manifest.jsonl"), text_of(local / "manifest.jsonl"));
+  EXPECT_EQ(text_of(first.directory / "best.yaml"), text_of(local / "best.yaml"));
+}
+
 TEST_F(Slurm, WhatNoNodeCanRunNowIsSubmittedWithAWarning) {
   const SlurmLab lab;
   const Ended ended = lab.palpate(on_slurm({"sweep", paper(), "seed=range(0,2)", "--quiet"}, {"-j", "9"}));

@@ -4,7 +4,10 @@
 number of runs? Prints the mean over fresh seeds of each chosen setting, and the mean regret per method: the difference to
 the best setting that any method has found. Needs r-cran-irace and python3-optuna.
 
-    tuners.py BUILD JOBS REPETITIONS [METHOD...]     METHOD: palpate irace optuna; default: all
+    tuners.py BUILD A|B JOBS REPETITIONS [METHOD...]     METHOD: palpate irace optuna; default: all
+
+Objective A is the paper's strategy on object I at random places (1 ms a run), B the default strategy on a ring with the
+standard effects, 17 taps (0.1 s a run).
 """
 import json
 import math
@@ -18,13 +21,19 @@ import tempfile
 import threading
 
 ROOT = os.path.realpath(os.path.join(os.path.dirname(__file__), "..", "..", ".."))
-CONFIG = os.path.join(ROOT, "configs", "paper", "object_i.yaml")
-FIXED = ["scene.placement=random"]
 FRESH = range(900000, 900200)
-# Key, first end, last end, unit; all ranges are logarithmic.
-RANGES = [("kernel.length_scale", 5, 100, "mm"), ("belief.label.kernel.length_scale", 5, 100, "mm"),
-          ("belief.label.noise", 1e-4, 1, ""), ("belief.height.noise", 0.1, 30, "mm")]
-CHOICES = [("acquisition", ["weighted", "uncertainty"]), ("kernel", ["rbf", "matern52"])]
+# Config, options of all runs, ranges (key, first end, last end, unit; all logarithmic), and lists of values.
+OBJECTIVES = {
+    "A": ("paper/object_i.yaml", ["scene.placement=random"],
+          [("kernel.length_scale", 5, 100, "mm"), ("belief.label.kernel.length_scale", 5, 100, "mm"),
+           ("belief.label.noise", 1e-4, 1, ""), ("belief.height.noise", 0.1, 30, "mm")],
+          [("acquisition", ["weighted", "uncertainty"]), ("kernel", ["rbf", "matern52"])]),
+    "B": ("default.yaml", ["scene=ring", "scene.effects=standard", "taps=17"],
+          [("kernel.length_scale", 10, 100, "mm"), ("belief.height.noise", 1, 20, "mm"),
+           ("acquisition.acquisitions.0.new_object_weight", 0.2, 4, ""), ("acquisition.acquisitions.2.factor", 0.2, 10, "")],
+          [])}
+CONFIG, FIXED, RANGES, CHOICES = OBJECTIVES[sys.argv[2]]
+CONFIG = os.path.join(ROOT, "configs", CONFIG)
 
 
 class Objective:
@@ -133,11 +142,11 @@ METHODS = {"palpate": by_palpate, "irace": by_irace, "optuna": by_optuna}
 
 
 def main():
-    build, jobs, repetitions = sys.argv[1], int(sys.argv[2]), int(sys.argv[3])
+    build, jobs, repetitions = sys.argv[1], int(sys.argv[3]), int(sys.argv[4])
     objective = Objective(build)
     truth = {}
     means = {}
-    for name in sys.argv[4:] or METHODS:
+    for name in sys.argv[5:] or METHODS:
         means[name] = []
         for repetition in range(repetitions):
             setting = METHODS[name](build, objective, jobs, 1 + 5000 * repetition)
