@@ -11,7 +11,7 @@ add_library(palpate_report STATIC
   report/contours.cpp report/history.cpp report/curves.cpp report/colours.cpp
   report/page/assets.S report/page/page.cpp
   report/page/warnings.cpp report/page/run_page.cpp report/page/runs_page.cpp
-  report/page/sweep_page.cpp report/page/sweep_curves.cpp
+  report/page/sweep_page.cpp report/page/sweep_race.cpp report/page/sweep_curves.cpp
   report/figures/figure_layout.cpp report/figures/paper_figures.cpp report/figures/curves_legend.cpp report/figures/curves_figure.cpp
   report/figures/run_figures.cpp report/figures/sweep_figures.cpp
   report/words/words.cpp report/words/titles.cpp report/words/models.cpp report/words/explanation.cpp report/words/explain.cpp report/words/explain_any_side.cpp
@@ -30,7 +30,7 @@ palpate_in_batches(palpate_report watch/server.cpp)
 # The assembler includes these files; CMake does not see such dependencies.
 set(report_files vendor/plotly/plotly.min.js.gz web/style.css web/theme.js web/common.js web/live.js web/run_maps.js web/run_space.js web/play.js
                  web/run.js web/runs.js
-                 web/sweep_numbers.js web/sweep_panels.js web/sweep_curves.js web/sweep.js)
+                 web/sweep_numbers.js web/sweep_panels.js web/sweep_curves.js web/sweep_race.js web/sweep.js)
 list(TRANSFORM report_files PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/report/page/)
 list(APPEND report_files ${CMAKE_CURRENT_SOURCE_DIR}/analysis/figure_templates.gnuplot)
 set_source_files_properties(report/page/assets.S PROPERTIES OBJECT_DEPENDS "${report_files}"

@@ -58,6 +58,18 @@ std::vector<std::size_t> listed_settings(const RaceResults& results) {
   return out;
 }
 
+/// Returns "config as it stands", "best" or the reason why a setting lost; "" if there is nothing to remark.
+std::string remark_about(const RaceResults& results, std::size_t setting, const DisplayScale& scale) {
+  const RaceRecord& race = results.race;
+  std::vector<std::string> out;
+  if (setting == 0) out.emplace_back("config as it stands");
+  if (race.has_ended() && setting == race.winner) out.emplace_back("best");
+  if (const Loser* loss = loss_of(race, setting))
+    out.push_back(
+        fmt::format("lost after {} seeds: {} worse, p {:.2g}", loss->seeds, scale.quantity(loss->difference), loss->p));
+  return fmt::format("{}", fmt::join(out, ", "));
+}
+
 std::string settings_words(const RaceResults& results, std::size_t setting) {
   std::vector<std::string> out;
   const std::vector<std::string>& values = results.race.settings[setting].values;
@@ -114,7 +126,24 @@ std::vector<Row> race_rows(const RaceResults& results) {
     row.add("lost_after_seeds", loss != nullptr ? std::optional(static_cast<std::int64_t>(loss->seeds)) : std::nullopt);
     row.add("difference", loss != nullptr ? std::optional(loss->difference) : std::nullopt);
     row.add("p", loss != nullptr ? std::optional(loss->p) : std::nullopt);
+    const bool is_best = results.race.has_ended() && setting == results.race.winner;
+    row.add("is_best", is_best);
+    const MeanEstimate gain = is_best ? fresh_gain(results) : MeanEstimate{};
+    row.add("fresh_seeds", static_cast<std::int64_t>(gain.clusters));
+    row.add("gain", gain.count > 0 ? std::optional(gain.mean) : std::nullopt);
+    add_interval(row, "gain_", gain.interval);
   }
+  return out;
+}
+
+RaceOfPage race_of_page(const RaceResults& results) {
+  const DisplayScale scale = scale_of(results);
+  const RaceRecord& race = results.race;
+  RaceOfPage out;
+  for (std::size_t setting = 0; setting < race.settings.size(); ++setting)
+    out.settings.push_back({settings_words(results, setting), remark_about(results, setting, scale),
+                            loss_of(race, setting) != nullptr, race.has_ended() && setting == race.winner});
+  if (race.has_ended()) out.end = fmt::format("The race ended because {}; {}.", race.end, fresh_words(results));
   return out;
 }
 
@@ -126,19 +155,13 @@ std::string race_text(const RaceResults& results) {
   for (std::size_t i = 0; i < listed.size(); ++i) {
     if (i >= kMostRows && listed[i] != 0) continue;
     const RacedSetting& one = race.settings[listed[i]];
-    const Loser* loss = loss_of(race, listed[i]);
     table.add_row();
     const std::vector<std::string> values = shown_values(one.values);
     for (std::size_t key = 0; key < values.size(); ++key)
       table.show(results.description.keys[key].key, values[key], Table::Kind::text);
     table.show("seeds", std::to_string(one.jobs.size()));
     table.show(scale.title(results.description.metric), scale.number(mean_of_setting(results, listed[i])));
-    std::string remark = listed[i] == 0 ? "config as it stands" : "";
-    if (race.has_ended() && listed[i] == race.winner) remark += remark.empty() ? "best" : ", best";
-    if (loss != nullptr)
-      remark += fmt::format("{}lost after {} seeds: {} worse, p {:.2g}", remark.empty() ? "" : ", ", loss->seeds,
-                            scale.quantity(loss->difference), loss->p);
-    table.show("", remark, Table::Kind::text);
+    table.show("", remark_about(results, listed[i], scale), Table::Kind::text);
   }
   std::string out = table.text();
   if (listed.size() > kMostRows) out += fmt::format("{} settings in all: race.csv\n", listed.size());

@@ -25,11 +25,25 @@ struct RaceResults {
 MeanEstimate fresh_gain(const RaceResults& results);
 
 /// Returns one row per setting: number, values of the tuned keys, number of seeds, mean, and for a dropped setting the
-/// number of seeds after which it lost, its difference to the best one, and p. In SI units.
+/// number of seeds after which it lost, its difference to the best one, and p. The row of the winner has the gain on
+/// fresh seeds. In SI units.
 std::vector<Row> race_rows(const RaceResults& results);
 
 /// Returns the best settings in readable units, the config as it stands, the reason of the end, and the gain.
 std::string race_text(const RaceResults& results);
+
+/// Texts for the page of a race.
+struct RaceOfPage {
+  struct Setting {
+    std::string words;   ///< values of the keys
+    std::string remark;  ///< "config as it stands", "best", or the reason why it lost
+    bool lost = false;
+    bool best = false;
+  };
+  std::vector<Setting> settings;
+  std::string end;  ///< reason of the end and gain; "" if the race goes on
+};
+RaceOfPage race_of_page(const RaceResults& results);
 
 /// Returns the config of the winner as YAML, with the course of the race as a comment.
 std::string best_config(const RaceResults& results);

@@ -27,12 +27,12 @@ from . import _palpate, _program
 from ._errors import Error, InputError, make_error as _error
 from ._experiment import Belief, Experiment
 from ._palpate import Tap
-from ._records import Maps, Run, Sweep
+from ._records import Maps, Race, Run, Sweep
 
-__all__ = ["Belief", "Error", "Experiment", "InputError", "Maps", "Run", "Sweep", "Tap", "begin_sweep", "describe", "load", "load_sweep", "run", "sweep"]
+__all__ = ["Belief", "Error", "Experiment", "InputError", "Maps", "Race", "Run", "Sweep", "Tap", "begin_sweep", "describe", "load", "load_sweep", "run", "sweep", "tune"]
 __version__ = _palpate.version
 
-for _one in (Belief, Experiment, Maps, Run, Sweep):
+for _one in (Belief, Experiment, Maps, Race, Run, Sweep):
     _one.__module__ = __name__  # help() and pickle then use the public module name
 
 _atexit.register(_palpate.end_calls)  # at exit, Python waits for calls in other threads
@@ -93,6 +93,27 @@ def sweep(config, *axes, runs="runs", workers=None, progress=None, **settings) -
     if status not in (0, 1) or status == 1 and None in made.table["status"].tolist():
         raise _error(directory, f"the sweep ended with status {status}: {said}", "repeat the call to resume it", Error)
     return made
+
+
+def tune(config, keys, *, metric, jobs=None, time=None, within=None, fresh=None, over=None, where=None, runs="runs",
+         workers=None, progress=None) -> Race:
+    """Finds the best setting of some keys, as `palpate tune CONFIG KEY=RANGE ... --metric FIELD --jobs N` does.
+
+    `keys`: a dict of keys to a list, or to a text such as "log_uniform(5mm,10cm)" or "logspace(1cm,5cm,8)"; another value
+    applies to all runs: {"seed": 1000}. `jobs`: budget in runs, or `time`: in wall time, "10min". `within`: "0.5mm".
+    `over`: a list of scenes. Further arguments as in sweep(); progress(runs, jobs). An existing race is resumed. Raises Error,
+    also if runs have not ended.
+    """
+    words = [f"{key}={_program.values_text(value)}" for key, value in keys.items()]
+    options = {"--metric": metric, "--jobs": jobs, "--time": time, "--within": within, "--fresh": fresh, "--where": where,
+               "--over": over and ",".join(over), "--runs": _os.fspath(runs), "-j": workers}
+    words += [text for name, value in options.items() if value is not None for text in (name, str(value))]
+    status, said = _program.conduct([_palpate.program, "tune", _os.fspath(config), *words], progress)
+    if status == 2:
+        raise _error("tune", said, "")
+    if status != 0:
+        raise _error("tune", f"the race ended with status {status}: {said}", "repeat the call to resume it", Error)
+    return Race(_program.race_directory(said))
 
 
 def begin_sweep(config, *axes, labels=None, runs="runs", **settings) -> Sweep:

@@ -149,6 +149,17 @@ class Experiment:
     def finish(self) -> dict[str, Any]: ...
     def close(self) -> None: ...
 
+class Race:
+    directory: str
+    best_config: str
+    def __init__(self, directory: str | PathLike[str]) -> None: ...
+    @property
+    def table(self) -> np.ndarray: ...
+    @property
+    def best(self) -> dict[str, str]: ...
+    @property
+    def sweep(self) -> Sweep: ...
+
 def load(directory: str | PathLike[str], runs: str | PathLike[str] = "runs") -> Run: ...
 def load_sweep(directory: str | PathLike[str] | Iterable[str | PathLike[str]], runs: str | PathLike[str] = "runs") -> Sweep: ...
 def describe() -> dict[str, tuple[str, str]]: ...
@@ -171,3 +182,18 @@ def sweep(
     progress: Callable[[int, int], object] | None = None,
     **settings: Any,
 ) -> Sweep: ...
+def tune(
+    config: str | PathLike[str],
+    keys: Mapping[str, Any],
+    *,
+    metric: str,
+    jobs: int | None = None,
+    time: str | None = None,
+    within: str | None = None,
+    fresh: int | None = None,
+    over: Iterable[str] | None = None,
+    where: str | None = None,
+    runs: str | PathLike[str] = "runs",
+    workers: int | None = None,
+    progress: Callable[[int, int], object] | None = None,
+) -> Race: ...

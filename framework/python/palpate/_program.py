@@ -48,7 +48,8 @@ def override_texts(overrides, settings):
 
 
 def conduct(command, progress):
-    """Runs a sweep and returns its exit status and its last line. The sweep ends with this process. Calls progress(done, jobs)."""
+    """Runs a sweep or a race and returns its exit status and its last line on stderr. It ends with this process. Calls
+    progress(done, jobs)."""
     # The child process has a separate session. Otherwise, Ctrl-C in a terminal would reach it twice.
     child = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE,
                              start_new_session=True, env={**os.environ, "PALPATE_PARENT": str(os.getpid())})
@@ -64,9 +65,9 @@ def conduct(command, progress):
             if not some:
                 break
             said = (said + some)[-4096:]
-            counts = re.findall(rb"(\d+) of (\d+) jobs done, \d+ running, (\d+) failed", said)
+            counts = re.findall(rb"(\d+) of (\d+) (?:jobs done, \d+ running, (\d+) failed|runs, )", said)
             if progress is not None and counts and interrupted is None:
-                now = int(counts[-1][0]) + int(counts[-1][2]), int(counts[-1][1])
+                now = int(counts[-1][0]) + int(counts[-1][2] or 0), int(counts[-1][1])
                 if now != told:
                     told = now
                     progress(*now)
@@ -79,8 +80,13 @@ def conduct(command, progress):
     if interrupted is not None:
         raise interrupted
     lines = [line for line in said.decode(errors="replace").splitlines()
-             if line.strip() and not re.match(r"\s*\d+ of \d+ jobs done", line)]
+             if line.strip() and not re.match(r"\s*\d+ of \d+ (jobs done|runs, )", line)]
     return child.returncode, lines[-1] if lines else ""
+
+
+def race_directory(said):
+    """Returns the directory in the line that the program prints at the start of a race."""
+    return re.sub(r" exists: the race goes on$", "", re.sub(r"^\d+ settings on \d+ seeds in ", "", said))
 
 
 def curve_columns(file, keys):
@@ -96,6 +102,24 @@ def curve_columns(file, keys):
         if name in keys:
             out.append((name, cells))
         elif name in whole or name == "at" and rows[0]["against"] == "taps":
+            out.append((name, np.array(cells, dtype=int)))
+        else:
+            out.append((name, np.array([float(cell) if cell else np.nan for cell in cells])))
+    return out
+
+
+def race_columns(file):
+    """Returns the columns of race.csv: lists of texts for the keys, which stand before `seeds`, and arrays of numbers."""
+    with open(file, encoding="utf-8", newline="") as text:
+        head, *rows = csv.reader(text)
+    out = []
+    for i, name in enumerate(head):
+        cells = [row[i] for row in rows]
+        if 0 < i < head.index("seeds"):
+            out.append((name, np.array(cells, dtype=object)))
+        elif name == "is_best":
+            out.append((name, np.array([cell == "true" for cell in cells])))
+        elif name in ("setting", "seeds", "fresh_seeds"):
             out.append((name, np.array(cells, dtype=int)))
         else:
             out.append((name, np.array([float(cell) if cell else np.nan for cell in cells])))

@@ -264,3 +264,37 @@ def _plotted(draw):
         return draw()
     except ImportError as trouble:
         raise make_error("plot", "matplotlib is missing", "install it: apt install python3-matplotlib", Error) from trouble
+
+
+class Race:
+    """A race of settings that tune() ran."""
+
+    def __init__(self, directory):
+        self.directory = os.fspath(directory)
+        self.best_config = os.path.join(self.directory, "best.yaml")
+
+    def __repr__(self):
+        return f"<palpate.Race {self.directory}: {len(self.table)} settings>"
+
+    def _repr_html_(self):
+        rows = self.table
+        return _show.table(rows.tolist(), rows.dtype.names)
+
+    @property
+    def table(self) -> np.ndarray:
+        """Structured array with one row per setting: the values of the keys as texts, `seeds` and the mean of the metric. A
+        setting that lost has the number of seeds after which it did, its difference to the best one, and p. The row with
+        `is_best` has the gain over the config as it stands on `fresh_seeds`, with its 95 % interval. In SI units."""
+        return _table(_program.race_columns(os.path.join(self.directory, "race.csv")))
+
+    @property
+    def best(self) -> dict[str, str]:
+        """The values of the keys in the best setting."""
+        rows = self.table
+        names = rows.dtype.names[1:rows.dtype.names.index("seeds")]
+        return {name: str(rows[name][rows["is_best"]][0]) for name in names}
+
+    @property
+    def sweep(self) -> Sweep:
+        """All runs of the race."""
+        return Sweep(self.directory)

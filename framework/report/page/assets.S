@@ -33,6 +33,7 @@ palpate_asset_sweep:
         .incbin "web/sweep_numbers.js"
         .incbin "web/sweep_panels.js"
         .incbin "web/sweep_curves.js"
+        .incbin "web/sweep_race.js"
         .incbin "web/sweep.js"
         .byte 0
 

@@ -10,6 +10,7 @@
 #include "record/run_directory.hpp"
 #include "report/page/page.hpp"
 #include "report/page/sweep_curves.hpp"
+#include "report/page/sweep_race.hpp"
 #include "sweep/read_jobs.hpp"
 
 #include <algorithm>
@@ -327,6 +328,7 @@ Json sweep_data(const Sweep& sweep, const OnProgress& progress, std::size_t most
            {"scene_keys", scene_keys(sweep)},
            {"tally", page.tally.json(sweep, step)},
            {"config", to_yaml(read_run_config(sweep.directory))}};
+  if (Json race = json_of_race(sweep); !race.is_null()) out["race"] = std::move(race);
   add_columns(out, sweep, page.jobs, columns, units);
   return out;
 }

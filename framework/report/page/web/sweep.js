@@ -304,6 +304,7 @@ function placePanels(sweep, chooser) {
   const scenes = sweep.scenes();
   const ofScenes = scenes.length > 1 ? [chooser("scene", sweep.scene_keys.join(", "), scenes, [drawFront])] : [];
   document.body.append(
+    ...(sweep.race ? [placeRace(sweep)] : []),
     ...(sweep.curves ? [placeCurves(sweep, chooser, choices)] : []),
     element("div", { class: "controls" }, chooser("metric", "show", columns, [drawCells, drawGroups, drawParallel], withUnit)),
     section(
@@ -350,7 +351,7 @@ function drawPanels(sweep) {
   placePanels(sweep, chooser);
   document.body.append(jobs.place());
   jobs.choose(choice);
-  const all = [drawCells, drawGroups, drawParallel, ...(sweep.curves ? [drawCurves] : []), drawFront];
+  const all = [...(sweep.race ? [drawRace] : []), drawCells, drawGroups, drawParallel, ...(sweep.curves ? [drawCurves] : []), drawFront];
   sweep.refresh = () => {
     jobs.show();
     drawAll(all);
