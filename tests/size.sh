@@ -14,11 +14,11 @@ cd "$(dirname "$(readlink -f "$0")")/.."
 ceilings='
 .ci 0 131
 . 0 199
-framework 0 158 # one file of CMake per library
-framework/analysis 3033 0 # tables by one model
+framework 0 163 # tune; one file of CMake per library
+framework/analysis 3330 0 # power and importance; tables by one model
 framework/belief 2336 0 # beliefs by an interface
 framework/calibrate 550 0
-framework/cli 3540 60 # one file per command, with its arguments
+framework/cli 3980 60 # tune and power; one file per command, with its arguments
 framework/cmake 0 220 # packages of a cross build
 framework/config 3170 0
 framework/experiment 1560 0 # initial design and best score in files of their own
@@ -32,7 +32,8 @@ framework/report 5822 97 # facts of pages are computed in C++
 framework/scene 749 0
 framework/shared 1392 0 # counts of factorisations for beliefs
 plugins/beliefs 3060 9 # the belief solids
-framework/sweep 1839 0 # pooled records in files of their own
+framework/sweep 1975 0 # rounds; pooled records in files of their own
+framework/tune 1330 0 # the race of palpate tune
 framework/watch 714 0
 plugins 33 78
 plugins/acquisitions 799 96 # each folder builds itself

@@ -58,12 +58,18 @@ std::vector<std::size_t> listed_settings(const RaceResults& results) {
   return out;
 }
 
+/// Returns the setting of best.yaml: the winner, or the config as it stands if it is better on the fresh seeds.
+std::size_t best_setting(const RaceResults& results) {
+  const MeanEstimate gain = fresh_gain(results);
+  return gain.interval && gain.interval->high < 0.0 ? 0 : results.race.winner;
+}
+
 /// Returns "config as it stands", "best" or the reason why a setting lost; "" if there is nothing to remark.
 std::string remark_about(const RaceResults& results, std::size_t setting, const DisplayScale& scale) {
   const RaceRecord& race = results.race;
   std::vector<std::string> out;
   if (setting == 0) out.emplace_back("config as it stands");
-  if (race.has_ended() && setting == race.winner) out.emplace_back("best");
+  if (race.has_ended() && setting == best_setting(results)) out.emplace_back("best");
   if (const Loser* loss = loss_of(race, setting))
     out.push_back(
         fmt::format("lost after {} seeds: {} worse, p {:.2g}", loss->seeds, scale.quantity(loss->difference), loss->p));
@@ -95,7 +101,10 @@ std::string fresh_words(const RaceResults& results) {
   const DisplayScale scale = scale_of(results);
   std::string words = fmt::format("gain over the config as it stands, on {} that had no part in the choice: {}",
                                   units_words(gain.clusters, true), scale.with_unit(scale.estimate(gain)));
-  if (gain.interval && gain.interval->low <= 0.0) words += "; the interval contains 0, so the gain is not certain";
+  if (best_setting(results) == 0)
+    words += "; the config as it stands is better and stays the best";
+  else if (gain.interval && gain.interval->low <= 0.0)
+    words += "; the interval contains 0, so the gain is not certain";
   return words;
 }
 
@@ -126,9 +135,9 @@ std::vector<Row> race_rows(const RaceResults& results) {
     row.add("lost_after_seeds", loss != nullptr ? std::optional(static_cast<std::int64_t>(loss->seeds)) : std::nullopt);
     row.add("difference", loss != nullptr ? std::optional(loss->difference) : std::nullopt);
     row.add("p", loss != nullptr ? std::optional(loss->p) : std::nullopt);
-    const bool is_best = results.race.has_ended() && setting == results.race.winner;
-    row.add("is_best", is_best);
-    const MeanEstimate gain = is_best ? fresh_gain(results) : MeanEstimate{};
+    const bool has_ended = results.race.has_ended();
+    row.add("is_best", has_ended && setting == best_setting(results));
+    const MeanEstimate gain = has_ended && setting == results.race.winner ? fresh_gain(results) : MeanEstimate{};
     row.add("fresh_seeds", static_cast<std::int64_t>(gain.clusters));
     row.add("gain", gain.count > 0 ? std::optional(gain.mean) : std::nullopt);
     add_interval(row, "gain_", gain.interval);
@@ -142,7 +151,7 @@ RaceOfPage race_of_page(const RaceResults& results) {
   RaceOfPage out;
   for (std::size_t setting = 0; setting < race.settings.size(); ++setting)
     out.settings.push_back({settings_words(results, setting), remark_about(results, setting, scale),
-                            loss_of(race, setting) != nullptr, race.has_ended() && setting == race.winner});
+                            loss_of(race, setting) != nullptr, race.has_ended() && setting == best_setting(results)});
   if (race.has_ended()) out.end = fmt::format("The race ended because {}; {}.", race.end, fresh_words(results));
   return out;
 }
@@ -173,14 +182,14 @@ std::string race_text(const RaceResults& results) {
 
 std::string best_config(const RaceResults& results) {
   const RaceRecord& race = results.race;
-  const Job& first = results.sweep.jobs[race.settings[race.winner].jobs.front()];
+  const Job& first = results.sweep.jobs[race.settings[best_setting(results)].jobs.front()];
   Tree config = read_run_config(job_directory(results.sweep, first));
   config.erase("expect");
   // With a new name, the run gets a folder runs/NAME of its own.
   Tree& name = config.at("name");
   name = Tree::scalar(name.text + "_best", true);
   std::string comment =
-      fmt::format("Best of {} settings: {}\n", race.settings.size(), settings_words(results, race.winner));
+      fmt::format("Best of {} settings: {}\n", race.settings.size(), settings_words(results, best_setting(results)));
   for (const TunedKey& one : results.description.keys)
     comment += fmt::format("tried: {}={}\n", one.key, value_text(one.written));
   comment += fmt::format("metric: {}; {} runs; {}\n{}", results.description.metric, race.race_jobs, race.end,
