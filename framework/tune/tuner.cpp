@@ -330,7 +330,7 @@ bool add_round(const TunePlanner& planner, const fs::path& directory, std::size_
   for (;;) {
     RaceDecision decision = decide(rules, race.state, table, budget, race.race_jobs);
     check_unchanged(planner, sweep, race,
-                    decision.end.empty() ? decision.state.racing : std::vector<std::size_t>{0, decision.winner});
+                    decision.end.empty() ? decision.state.racing : std::vector<std::size_t>{decision.winner});
     const std::vector<PlannedSetting> settings = settings_of_round(planner, race, decision, sweep.rounds.size());
     std::vector<Job> jobs;
     if (!settings.empty()) {

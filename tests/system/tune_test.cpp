@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: MIT
+// `palpate tune` as a user runs it: a race, its files, kills, and what is rejected.
+#include "support/programs.hpp"
+#include "system/shell.hpp"
+
+#include "sweep/sweep.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <csignal>
+#include <random>
+
+namespace palpate {
+namespace {
+
+using test::Words;
+
+class Tune : public test::Shell {
+ protected:
+  static Words race(const Words& more = Words(), const std::string& fresh = "5") {
+    const Words all{"tune",
+                    paper(),
+                    "kernel.length_scale=log_uniform(5mm,10cm)",
+                    "acquisition=weighted,uncertainty",
+                    "--metric",
+                    "rmse_m",
+                    "--jobs",
+                    "100",
+                    "--fresh",
+                    fresh,
+                    "--quiet"};
+    return all + more;
+  }
+  std::string refused_race(const Words& more) const { return refused(Words{"tune", paper()} + more); }
+};
+
+TEST_F(Tune, FindsASettingThatIsBetterThanTheConfigAndWritesItAsAConfigThatRuns) {
+  const test::Ended ended = palpate(race(Words(), "40"));
+  ASSERT_EQ(ended.status, 0) << ended.err;
+  EXPECT_THAT(ended.out, AllOf(HasSubstr("config as it stands"), HasSubstr("best"),
+                               HasSubstr("on 40 seeds that had no part in the choice: ")));
+  const fs::path race_of = directory();
+  const Sweep sweep = read_sweep(race_of);
+  EXPECT_LE(sweep.rounds[sweep.rounds.size() - 2].jobs, 100U);
+  EXPECT_EQ(sweep.rounds.back().jobs, sweep.rounds[sweep.rounds.size() - 2].jobs + 80) << "both settings on 40 seeds";
+  EXPECT_EQ(lines(text_of(race_of / "results.csv")), static_cast<int>(sweep.jobs.size()) + 1);
+  EXPECT_THAT(text_of(race_of / "best.yaml"),
+              AllOf(StartsWith("# Best of "), HasSubstr("\nname: \"object_i_best\"\n")));
+  EXPECT_EQ(palpate({"run", (race_of / "best.yaml").string(), "--quiet", "--runs", "again"}).status, 0);
+  EXPECT_THAT(palpate({"status", race_of}).out, HasSubstr(" 0 missing"));
+  EXPECT_EQ(palpate({"compare", race_of.string(), "--by", "acquisition", "--metric", "rmse_m"}).status, 0);
+  const std::string before = text_of(race_of / "manifest.jsonl");
+  EXPECT_EQ(palpate(race(Words(), "40")).status, 0) << "a finished race is shown";
+  EXPECT_EQ(text_of(race_of / "manifest.jsonl"), before);
+}
+
+TEST_F(Tune, KilledAtAnyMomentEndsWithTheDecisionsOfTheUnbrokenRace) {
+  ASSERT_EQ(palpate(race({"--runs", "unbroken"})).status, 0);
+  const fs::path unbroken = directory("unbroken");
+  std::mt19937 random(7);
+  const int races = std::getenv("PALPATE_LONG") != nullptr ? 40 : 4;
+  for (int i = 0; i < races; ++i) {
+    const std::string runs = "killed" + std::to_string(i);
+    auto child = begin(race({"--runs", runs}));
+    std::this_thread::sleep_for(std::chrono::milliseconds(20 + random() % 500));
+    child->signal(SIGKILL);
+    child->wait();
+    ASSERT_EQ(palpate(race({"--runs", runs})).status, 0) << i;
+    for (const char* const file : {"manifest.jsonl", "best.yaml"})
+      EXPECT_EQ(text_of(directory(runs) / file), text_of(unbroken / file)) << i << " " << file;
+  }
+}
+
+TEST_F(Tune, IgnoresJobsWithoutTheLineOfTheirRoundAndRejectsChangedLines) {
+  ASSERT_EQ(palpate(race()).status, 0);
+  const fs::path manifest = directory() / "manifest.jsonl";
+  const std::string whole = text_of(manifest);
+  const std::size_t last = whole.rfind("\n{\"round\"") + 1;
+  write(manifest, whole.substr(0, last));  // the process was killed before it wrote the line of the last round
+  ASSERT_EQ(resume(directory()).status, 0);
+  EXPECT_EQ(text_of(manifest), whole);
+  write(manifest, whole.substr(0, last + 20));
+  ASSERT_EQ(resume(directory()).status, 0);
+  EXPECT_EQ(text_of(manifest), whole);
+  replace(manifest, "\"seeds\": 4", "\"seeds\": 5");
+  const test::Ended ended = resume(directory());
+  EXPECT_EQ(ended.status, 2);
+  EXPECT_THAT(ended.err, HasSubstr("is not a round of this sweep, or lines before it were changed"));
+}
+
+TEST_F(Tune, RejectsInOneLineWhatCannotBeRacedAndBeginsNothing) {
+  const Words rest{"--metric", "rmse_m", "--jobs", "100"};
+  EXPECT_THAT(refused_race(Words{"scene=block,ring"} + rest), HasSubstr("--over block,ring"));
+  EXPECT_THAT(refused_race(Words{"kernel.length_scale=uniform(2cm,2cm)"} + rest), HasSubstr("is not a range"));
+  EXPECT_THAT(refused_race(Words{"kernel.length_scale=range(10mm,60mm,1mm)"} + rest),
+              HasSubstr("are fewer than the first round needs"));
+  EXPECT_THAT(refused_race({"taps=5,6", "--metric", "rmse", "--jobs", "100"}), HasSubstr("tune.metric"));
+  EXPECT_THAT(refused_race({"taps=5,6", "--metric", "rms_surface_distance_m", "--jobs", "100"}),
+              HasSubstr("the first 4 runs of the config have no value of 'rms_surface_distance_m'"));
+  EXPECT_TRUE(left_nothing());
+}
+
+TEST_F(Tune, EndsAtOnceIfAKeyHasNoEffect) {
+  const test::Ended ended =
+      palpate({"tune", paper(), "belief.height.noise=0.1mm,0.2mm,0.3mm", "acquisition=random", "--metric", "rmse_m",
+               "--jobs", "200", "--within", "0.5mm", "--fresh", "0", "--quiet"});
+  ASSERT_EQ(ended.status, 0) << ended.err;
+  EXPECT_THAT(ended.out,
+              HasSubstr("12 runs; the race ended because all settings left are within the given difference"));
+  EXPECT_THAT(ended.out, HasSubstr("the config as it stands is the best setting"));
+}
+
+TEST_F(Tune, StopsIfTheGroupsOfTheConfigWereChangedSinceItBegan) {
+  write("configs/kernel/own.yaml", "kernel: {type: rbf, length_scale: 2 cm}\n");
+  write("configs/mine.yaml", text_of(paper()));
+  const Words words{"tune",
+                    "configs/mine.yaml",
+                    "kernel=own,matern52",
+                    "acquisition=weighted,uncertainty",
+                    "--metric",
+                    "rmse_m",
+                    "--jobs",
+                    "60",
+                    "--quiet"};
+  const test::Ended first = palpate(words);
+  ASSERT_EQ(first.status, 0) << first.err;
+  const fs::path manifest = directory() / "manifest.jsonl";
+  const std::string whole = text_of(manifest);
+  write(manifest, whole.substr(0, whole.find("\n", whole.find("{\"round\"")) + 1));  // after the first round
+  write("configs/kernel/own.yaml", "kernel: {type: rbf, length_scale: 3 cm}\n");
+  const test::Ended ended = resume(directory());
+  EXPECT_NE(ended.status, 0);
+  EXPECT_THAT(ended.err, HasSubstr("were changed since it began"));
+}
+
+}  // namespace
+}  // namespace palpate
