@@ -17,6 +17,33 @@ import palpate
 from support import BUILD, DEFAULT, FolderTest, read_csv, run_palpate
 
 
+class Races(FolderTest):
+    def test_a_race_from_python_has_the_table_and_the_best_setting_of_the_program(self):
+        config = pathlib.Path(DEFAULT).parent / "paper" / "object_i.yaml"
+        heard = []
+        race = palpate.tune(config, {"kernel.length_scale": "log_uniform(5mm,10cm)", "acquisition": ["weighted", "uncertainty"]},
+                            metric="rmse_m", jobs=80, fresh=5, runs=self.folder,
+                            progress=lambda runs, jobs: heard.append((runs, jobs)))
+        table = race.table
+        self.assertEqual(table["setting"].tolist(), list(range(len(table))))
+        self.assertEqual(table["acquisition"][0], "weighted")
+        self.assertEqual(table["is_best"].sum(), 1)
+        self.assertEqual(set(race.best), {"kernel.length_scale", "acquisition"})
+        self.assertTrue(os.path.exists(race.best_config))
+        self.assertEqual(heard, sorted(set(heard)))
+        # The mean of a setting is the mean of its runs, without those on fresh seeds.
+        jobs = race.sweep.table
+        own = jobs["rmse_m"][jobs["kernel.length_scale"] == table["kernel.length_scale"][0]][:table["seeds"][0]]
+        self.assertAlmostEqual(table["rmse_m"][0], own.mean(), delta=1e-12)
+        again = palpate.tune(config, {"kernel.length_scale": "log_uniform(5mm,10cm)", "acquisition": ["weighted", "uncertainty"]},
+                             metric="rmse_m", jobs=80, fresh=5, runs=self.folder)
+        self.assertEqual(again.directory, race.directory)
+
+    def test_what_cannot_be_tuned_is_an_input_error_in_one_line(self):
+        with self.assertRaisesRegex(palpate.InputError, "changes the scene"):
+            palpate.tune(DEFAULT, {"scene": ["block", "ring"]}, metric="rmse_m", jobs=100, runs=self.folder)
+
+
 class Sweeps(FolderTest):
     def test_a_sweep_from_python_leaves_the_table_that_the_program_leaves(self):
         heard = []
