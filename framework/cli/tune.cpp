@@ -48,6 +48,7 @@ TuneWords words_of(const TuneArguments& arguments) {
     return number ? std::optional(std::to_string(*number)) : std::nullopt;
   };
   set("metric", arguments.metric);
+  set("cost", arguments.cost);
   set("jobs", count(arguments.jobs));
   set("time", arguments.time);
   set("within", arguments.within);
@@ -133,8 +134,12 @@ void print_race(const RaceResults& results) {
   write_file(directory / "race.csv", to_csv(race_rows(results)));
   print_text(race_text(results));
   if (!results.race.has_ended()) return;
-  write_file(directory / "best.yaml", best_config(results));
-  print_out("best setting: {}\n", (directory / "best.yaml").string());
+  const std::vector<std::size_t> best = best_settings(results);
+  for (std::size_t i = 0; i < best.size(); ++i) {
+    const fs::path file = directory / (results.description.cost ? fmt::format("front_{}.yaml", i + 1) : "best.yaml");
+    write_file(file, config_of_setting(results, best[i]));
+    print_out("{}: {}\n", results.description.cost ? "on the front" : "best setting", file.string());
+  }
 }
 
 /// Runs the rounds of a race until it ends. Returns the exit status.
@@ -143,7 +148,7 @@ int run_race(CommandEnvironment& program, const fs::path& directory, const Launc
   const Tree config = read_run_config(directory);
   const TuneDescription description(config.find("tune"), {});
   const TunePlanner planner(program.composer, program.host, directory / "config.yaml", description);
-  std::vector<std::optional<double>> values;
+  RaceValues values;
   RaceLine line(launch.quiet);
   LaunchArguments silent = launch;
   silent.quiet = true;  // RaceLine shows the progress
@@ -158,7 +163,7 @@ int run_race(CommandEnvironment& program, const fs::path& directory, const Launc
     line.show(race, budget);
     SweepExecution execution{program, sweep, options, silent, {}, false, {}, next_command(directory, launch, options)};
     std::vector<std::size_t> jobs = all_jobs(sweep);
-    jobs.erase(jobs.begin(), jobs.begin() + static_cast<std::ptrdiff_t>(values.size()));
+    jobs.erase(jobs.begin(), jobs.begin() + static_cast<std::ptrdiff_t>(values.metric.size()));
     JobStates begun = read_job_states(sweep, jobs);
     if (!has_begun) {
       check_builds(execution, jobs_not_done(begun));

@@ -12,7 +12,7 @@ struct ResumeArguments;
 struct TuneArguments {
   std::string config;
   std::vector<std::string> keys;
-  std::optional<std::string> metric, time, within, where;
+  std::optional<std::string> metric, cost, time, within, where;
   std::optional<int> jobs, fresh;
   std::vector<std::string> scenes;
   std::string runs = "runs";
@@ -34,6 +34,9 @@ inline void add_tune(CommandLine& line) {
                    "seed=1000, applies to all runs");
   command.argument("--metric", tune_arguments.metric, "FIELD",
                    "field of the summary whose mean over the seeds decides, for example rmse_m");
+  command.argument("--cost", tune_arguments.cost, "FIELD",
+                   "second field, of which less is better, for example robot_seconds. Keep the Pareto front of both "
+                   "instead of one setting");
   const Argument jobs = command.argument("--jobs", tune_arguments.jobs, "N",
                                          "budget: number of runs. The runs of --fresh are not counted", {at_least(1)});
   command.argument("--time", tune_arguments.time, "TIME", "budget in wall time instead, for example 10min",

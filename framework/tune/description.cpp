@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::int64_t kMostJobs = 1'000'000;
 constexpr std::int64_t kMostFresh = 100'000;
-const std::vector<std::string> kNames{"keys", "metric", "jobs", "time", "within", "fresh", "over", "where"};
+const std::vector<std::string> kNames{"keys", "metric", "cost", "jobs", "time", "within", "fresh", "over", "where"};
 
 [[noreturn]] void refuse(const Tree& at, const std::string& reason, const std::string& hint) {
   throw Error(at.place.text(), "tune" + reason, hint);
@@ -44,6 +44,22 @@ std::int64_t read_count(const Tree& value, const char* name, std::int64_t least,
   const std::int64_t count = read_integer(value, std::string("tune.") + name);
   if (count >= least && count <= most) return count;
   refuse(value, fmt::format(".{}: {} is out of range", name, count), fmt::format("it must be {} to {}", least, most));
+}
+
+/// Returns the field of the summary that the block names. Throws Error if there is none, or if neither less nor more of
+/// it is better.
+const RecordField& read_field(const Tree& block, const char* option) {
+  const Tree& name = *block.find(option);
+  const RecordField* field = find_summary_field(name.text);
+  if (field != nullptr && field->better != RecordField::Better::neither) return *field;
+  std::vector<std::string> known;
+  for (const RecordField& one : summary_fields()) {
+    if (one.better != RecordField::Better::neither) known.push_back(one.name);
+  }
+  refuse(name,
+         field == nullptr ? fmt::format(".{}: no summary has a field '{}'", option, name.text)
+                          : fmt::format(".{}: neither less nor more of '{}' is better", option, name.text),
+         suggestion(name.text, known));
 }
 
 }  // namespace
@@ -112,25 +128,22 @@ void TuneDescription::read_keys(ValueCount& count) {
 }
 
 void TuneDescription::read_metric() {
-  const Tree* name = written.find("metric");
-  if (name == nullptr) refuse(written, ": no metric is given", "add --metric rmse_m, or another field of the summary");
-  metric = name->text;
-  const RecordField* field = find_summary_field(metric);
-  if (field == nullptr || field->better == RecordField::Better::neither) {
-    std::vector<std::string> known;
-    for (const RecordField& one : summary_fields()) {
-      if (one.better != RecordField::Better::neither) known.push_back(one.name);
-    }
-    refuse(*name,
-           field == nullptr ? fmt::format(".metric: no summary has a field '{}'", metric)
-                            : fmt::format(".metric: neither less nor more of '{}' is better", metric),
-           suggestion(metric, known));
-  }
-  more_is_better = field->better == RecordField::Better::more;
-  if (const Tree* bound = written.find("within")) {
+  if (written.find("metric") == nullptr)
+    refuse(written, ": no metric is given", "add --metric rmse_m, or another field of the summary");
+  const RecordField& field = read_field(written, "metric");
+  metric = field.name;
+  more_is_better = field.better == RecordField::Better::more;
+  const Tree* bound = written.find("within");
+  if (bound != nullptr) {
     within = read_quantity(*bound, "tune.within", unit_of_column(metric));
     if (!(within >= 0.0)) refuse(*bound, ".within: is negative", "write for example within: 0.5 mm");
   }
+  const Tree* second = written.find("cost");
+  if (second == nullptr) return;
+  if (read_field(written, "cost").better == RecordField::Better::more || second->text == metric)
+    refuse(*second, fmt::format(".cost: '{}' is not a cost", second->text), "name a field of which less is better");
+  if (bound != nullptr) refuse(*bound, ".within: there is no best setting on a front", "leave out within or cost");
+  cost = second->text;
 }
 
 void TuneDescription::read_budget() {

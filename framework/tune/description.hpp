@@ -33,6 +33,7 @@ struct TuneWords {
 ///     tune:
 ///       keys: {kernel.length_scale: "log_uniform(5 mm, 10 cm)", acquisition: [weighted, uncertainty]}
 ///       metric: rmse_m      field of the summary; its mean is minimised or, if more is better, maximised
+///       cost: robot_seconds second metric, of which less is better; the race then keeps the Pareto front of both
 ///       jobs: 400           budget: number of runs, without those of `fresh`; or `time: 10 min`
 ///       within: 0.5 mm      end when all settings left differ from the best one by at most this; default 0
 ///       fresh: 100          number of seeds for the comparison of the best setting with the config as it stands
@@ -49,6 +50,7 @@ struct TuneDescription {
   std::optional<SweepAxis> scenes;  ///< key `scene` with the values of `over`
   std::string metric;               ///< a number in every summary that has it; less or more is better
   bool more_is_better = false;      ///< whether larger values of the metric are better
+  std::optional<std::string> cost;  ///< second metric, of which less is better: the race keeps the Pareto front
   std::optional<std::size_t> jobs;  ///< budget in runs
   std::optional<double> seconds;    ///< budget in seconds of wall time; either this or `jobs` is set
   double within = 0.0;              ///< in the unit of the metric (SI)

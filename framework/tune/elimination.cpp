@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <optional>
 
 namespace palpate {
 namespace {
@@ -70,6 +71,38 @@ std::vector<Loser> find_losers(const RaceTable& table, double alpha, std::size_t
     const double error = std::sqrt(one->variance / seeds);
     const double p = error > 0.0 ? student_tail(one->mean / error, seeds - 1.0 + prior_seeds(table)) : 0.0;
     if (p < alpha) out.push_back({one->row, table.front().size(), one->mean, p});
+  }
+  return out;
+}
+
+std::vector<Loser> find_dominated(const RaceTable& table, const RaceTable& costs, double alpha, std::size_t keep) {
+  std::vector<Loser> out;
+  std::vector<bool> is_out(table.size());
+  // The loss of a row against another one; nullopt if it does not lose.
+  const auto loss = [&](const RaceTable& from, std::size_t row, std::size_t other) -> std::optional<Loser> {
+    const std::vector<Loser> losers = find_losers({from[other], from[row]}, alpha, 1);
+    return !losers.empty() && losers.front().row == 1 ? std::optional(losers.front()) : std::nullopt;
+  };
+  for (std::size_t row = 0; row < table.size() && table.size() - out.size() > keep; ++row) {
+    for (std::size_t other = 0; other < table.size() && !is_out[row]; ++other) {
+      if (other == row || is_out[other]) continue;
+      std::optional<Loser> worse = loss(table, row, other);
+      const std::optional<Loser> dearer = loss(costs, row, other);
+      if (worse ? !dearer && costs[row] != costs[other] : !dearer || table[row] != table[other]) continue;
+      if (!worse) worse = dearer;
+      worse->row = row;
+      out.push_back(*worse);
+      is_out[row] = true;
+    }
+  }
+  return out;
+}
+
+std::vector<std::size_t> front_of_means(const RaceTable& table, const RaceTable& costs) {
+  const std::vector<double> cost = means_of(costs);
+  std::vector<std::size_t> out;
+  for (const std::size_t row : ranked(table)) {
+    if (out.empty() || cost[row] < cost[out.back()]) out.push_back(row);
   }
   return out;
 }

@@ -35,6 +35,14 @@ std::vector<std::size_t> ranked(const RaceTable& table);
 /// good settings whose differences vary little by chance.
 std::vector<Loser> find_losers(const RaceTable& table, double alpha, std::size_t keep);
 
+/// Returns the settings that another setting dominates: with p < `alpha`, they are worse in one of two tables, and in
+/// the other one worse or equal on all seeds. Leaves at least `keep` settings. Loser::difference and p are those of the
+/// table in which the setting is worse, `table` first.
+std::vector<Loser> find_dominated(const RaceTable& table, const RaceTable& costs, double alpha, std::size_t keep);
+
+/// Returns the settings that no other setting dominates by the means of both tables, in the order of `table`.
+std::vector<std::size_t> front_of_means(const RaceTable& table, const RaceTable& costs);
+
 /// Returns an upper bound on the disadvantage of any setting: the largest upper end of the one-sided 95 % interval of
 /// the mean difference to the best setting, with the variance of find_losers(). At least 0; 0 for a single setting, and
 /// if all settings have equal results.

@@ -35,12 +35,30 @@ std::vector<std::size_t> ranked_settings(const RaceState& state, const RaceTable
   return out;
 }
 
+/// Returns up to kElites settings from which a search continues: the best ones, or settings spread evenly over the
+/// front.
+std::vector<std::size_t> elites_of(const RaceState& state, const RaceTable& results, const RaceTable* costs) {
+  std::vector<std::size_t> out = ranked_settings(state, results);
+  std::vector<std::size_t> front;
+  if (costs != nullptr) front = front_settings(state, results, *costs);
+  if (front.size() > kElites) {
+    out.clear();
+    for (std::size_t i = 0; i < kElites; ++i) out.push_back(front[i * (front.size() - 1) / (kElites - 1)]);
+  }
+  std::stable_partition(out.begin(), out.end(),
+                        [&](std::size_t one) { return std::find(front.begin(), front.end(), one) != front.end(); });
+  out.resize(std::min(out.size(), kElites));
+  return out;
+}
+
 /// Removes the losers from the race and adds them to the decision.
-void drop_losers(const RaceRules& rules, const RaceTable& results, RaceDecision& decision) {
+void drop_losers(const RaceRules& rules, const RaceTable& results, const RaceTable* costs, RaceDecision& decision) {
   RaceState& state = decision.state;
   const std::size_t keep = is_last(rules, state) ? 1 : kElites;
   const double alpha = rules.is_search ? kAlphaOfSearch : kAlphaOfLists;
-  for (Loser one : find_losers(racing_table(state, results), alpha, keep)) {
+  const RaceTable table = racing_table(state, results);
+  for (Loser one : costs != nullptr ? find_dominated(table, racing_table(state, *costs), alpha, keep)
+                                    : find_losers(table, alpha, keep)) {
     one.row = state.racing[one.row];
     // A setting of an earlier stage is not dropped before it was compared on all of its seeds.
     if (results[one.row].size() <= state.seeds) decision.losers.push_back(one);
@@ -51,10 +69,10 @@ void drop_losers(const RaceRules& rules, const RaceTable& results, RaceDecision&
 }
 
 /// Begins the next stage of a search: the best settings remain, and others may join.
-void begin_stage(const RaceTable& results, std::size_t budget, std::size_t jobs, RaceDecision& decision) {
+void begin_stage(const RaceTable& results, const RaceTable* costs, std::size_t budget, std::size_t jobs,
+                 RaceDecision& decision) {
   RaceState& state = decision.state;
-  std::vector<std::size_t> elites = ranked_settings(state, results);
-  elites.resize(std::min(elites.size(), kElites));
+  std::vector<std::size_t> elites = elites_of(state, results, costs);
   const double left =
       static_cast<double>(budget) - static_cast<double>(jobs) - kLastShare * static_cast<double>(budget);
   // With a small budget, stages are left out, so that at least two settings join in each.
@@ -87,19 +105,27 @@ std::size_t first_stage_end(const RaceRules& rules, std::size_t budget) {
   return rules.is_search ? budget / 2 : budget;
 }
 
-RaceDecision decide(const RaceRules& rules, const RaceState& state, const RaceTable& results, std::size_t budget,
-                    std::size_t jobs) {
+std::vector<std::size_t> front_settings(const RaceState& state, const RaceTable& results, const RaceTable& costs) {
+  std::vector<std::size_t> out;
+  for (const std::size_t row : front_of_means(racing_table(state, results), racing_table(state, costs)))
+    out.push_back(state.racing[row]);
+  return out;
+}
+
+RaceDecision decide(const RaceRules& rules, const RaceState& state, const RaceTable& results, const RaceTable* costs,
+                    std::size_t budget, std::size_t jobs) {
   RaceDecision out;
   out.state = state;
   const auto end = [&](const char* reason) {
     out.end = reason;
-    out.winner = ranked_settings(out.state, results).front();
+    out.front = costs != nullptr ? front_settings(out.state, results, *costs)
+                                 : std::vector<std::size_t>{ranked_settings(out.state, results).front()};
     return out;
   };
   for (;;) {
-    drop_losers(rules, results, out);
+    drop_losers(rules, results, costs, out);
     if (out.state.racing.size() == 1 && is_last(rules, out.state)) return end("one setting is left");
-    if (largest_disadvantage(racing_table(out.state, results)) <= rules.within)
+    if (costs == nullptr && largest_disadvantage(racing_table(out.state, results)) <= rules.within)
       return end(rules.within > 0.0 ? "all settings left are within the given difference of the best one"
                                     : "all settings left have the same results");
     // Settings of earlier stages already have results on some of the next seeds.
@@ -112,7 +138,7 @@ RaceDecision decide(const RaceRules& rules, const RaceState& state, const RaceTa
       continue;
     }
     if (is_last(rules, out.state)) return end("the budget is used");
-    begin_stage(results, budget, jobs, out);
+    begin_stage(results, costs, budget, jobs, out);
     if (out.new_settings > 0) return out;
     // In the last stage, the seeds that all settings have in common count.
     out.state.seeds = results[out.state.racing.front()].size();

@@ -46,7 +46,7 @@ struct RaceDecision {
   std::vector<std::size_t> elites;  ///< best settings, the best first; only if settings join
   double spread = 0.0;              ///< see SearchSpace::near()
   std::string end;                  ///< reason why the race ends; "" if it goes on
-  std::size_t winner = 0;           ///< setting with the best mean; only if the race ends
+  std::vector<std::size_t> front;   ///< setting with the best mean, or the settings on the front; only if the race ends
 };
 
 /// Returns the number of initial settings of a search with this budget.
@@ -56,9 +56,13 @@ std::size_t initial_settings(std::size_t budget);
 std::size_t first_stage_end(const RaceRules& rules, std::size_t budget);
 
 /// Decides the next round. `results`: one row per setting, with its results on the first seeds; less is better. Each
-/// racing setting has at least `state.seeds` results. `budget`: number of jobs of the whole race; `jobs`: number so
-/// far.
-RaceDecision decide(const RaceRules& rules, const RaceState& state, const RaceTable& results, std::size_t budget,
-                    std::size_t jobs);
+/// racing setting has at least `state.seeds` results. `costs`: results of a second metric, or null; the race then drops
+/// settings that another one dominates (find_dominated()), and the elites are spread over the front. `budget`: number
+/// of jobs of the whole race; `jobs`: number so far.
+RaceDecision decide(const RaceRules& rules, const RaceState& state, const RaceTable& results, const RaceTable* costs,
+                    std::size_t budget, std::size_t jobs);
+
+/// Returns the racing settings on the front of both metrics, the best in the first metric first.
+std::vector<std::size_t> front_settings(const RaceState& state, const RaceTable& results, const RaceTable& costs);
 
 }  // namespace palpate

@@ -27,7 +27,7 @@ constexpr std::size_t kMostRows = 10;
 std::optional<double> mean_of_setting(const RaceResults& results, std::size_t setting) {
   std::vector<double> values;
   for (const std::size_t job : results.race.settings[setting].jobs) {
-    if (results.values[job]) values.push_back(*results.values[job]);
+    if (results.values.metric[job]) values.push_back(*results.values.metric[job]);
   }
   if (values.empty()) return std::nullopt;
   return results.description.more_is_better ? -mean_of(values) : mean_of(values);
@@ -43,12 +43,12 @@ const Loser* loss_of(const RaceRecord& race, std::size_t setting) {
 /// Returns all settings: the winner, the others in the race by their means, then those that lost, the last one first.
 std::vector<std::size_t> listed_settings(const RaceResults& results) {
   const RaceRecord& race = results.race;
-  const RaceTable table = race_table(race, results.values);
+  const RaceTable table = race_table(race, results.values.metric);
   const std::vector<double> means = means_of(table);
   std::vector<std::size_t> out(race.settings.size());
   std::iota(out.begin(), out.end(), std::size_t{0});
   const auto key = [&](std::size_t setting) {
-    const bool wins = race.has_ended() && setting == race.winner;
+    const bool wins = std::count(race.front.begin(), race.front.end(), setting) > 0;
     const bool races = std::count(race.state.racing.begin(), race.state.racing.end(), setting) > 0;
     // Settings with fewer seeds lost earlier.
     const std::size_t most = results.race.race_jobs;
@@ -58,10 +58,9 @@ std::vector<std::size_t> listed_settings(const RaceResults& results) {
   return out;
 }
 
-/// Returns the setting of best.yaml: the winner, or the config as it stands if it is better on the fresh seeds.
-std::size_t best_setting(const RaceResults& results) {
-  const MeanEstimate gain = fresh_gain(results);
-  return gain.interval && gain.interval->high < 0.0 ? 0 : results.race.winner;
+bool is_best(const RaceResults& results, std::size_t setting) {
+  const std::vector<std::size_t> best = best_settings(results);
+  return std::count(best.begin(), best.end(), setting) > 0;
 }
 
 /// Returns "config as it stands", "best" or the reason why a setting lost; "" if there is nothing to remark.
@@ -69,7 +68,7 @@ std::string remark_about(const RaceResults& results, std::size_t setting, const 
   const RaceRecord& race = results.race;
   std::vector<std::string> out;
   if (setting == 0) out.emplace_back("config as it stands");
-  if (race.has_ended() && setting == best_setting(results)) out.emplace_back("best");
+  if (is_best(results, setting)) out.emplace_back(results.description.cost ? "on the front" : "best");
   if (const Loser* loss = loss_of(race, setting))
     out.push_back(
         fmt::format("lost after {} seeds: {} worse, p {:.2g}", loss->seeds, scale.quantity(loss->difference), loss->p));
@@ -93,15 +92,55 @@ DisplayScale scale_of(const RaceResults& results) {
   return readable_scale(unit_of_column(results.description.metric), means);
 }
 
+std::string counted_settings(std::size_t count) { return fmt::format("{} setting{}", count, count == 1 ? " is" : "s are"); }
+
+/// Returns the mean of a field over the fresh seeds of a setting, with its interval.
+MeanEstimate fresh_mean(const RacedSetting& setting, const std::vector<std::optional<double>>& values, double sign) {
+  Clusters out;
+  for (const std::size_t job : setting.fresh) {
+    if (values[job]) out.push_back({sign * *values[job]});
+  }
+  return out.empty() ? MeanEstimate{} : mean_of_sample(out);
+}
+
+/// Returns a table of the settings on the front, the cheapest last, and of the config as it stands, on the fresh seeds.
+std::string front_text(const RaceResults& results) {
+  const RaceRecord& race = results.race;
+  std::vector<std::size_t> settings = race.front;
+  if (std::count(settings.begin(), settings.end(), std::size_t{0}) == 0) settings.push_back(0);
+  std::vector<std::vector<MeanEstimate>> means(2);
+  for (const std::size_t one : settings) {
+    means[0].push_back(fresh_mean(race.settings[one], results.values.metric, results.description.more_is_better ? -1 : 1));
+    means[1].push_back(fresh_mean(race.settings[one], results.values.cost, 1));
+  }
+  Table table;
+  for (std::size_t i = 0; i < settings.size(); ++i) {
+    table.add_row();
+    table.show("on fresh seeds", settings_words(results, settings[i]), Table::Kind::text);
+    for (const bool is_cost : {false, true}) {
+      const std::string& field = is_cost ? *results.description.cost : results.description.metric;
+      std::vector<double> all;
+      for (const MeanEstimate& one : means[is_cost]) all.push_back(one.mean);
+      const DisplayScale scale = readable_scale(unit_of_column(field), all);
+      table.show(scale.title(field), scale.estimate(means[is_cost][i]));
+    }
+    table.show("", settings[i] == 0 ? "config as it stands" : "", Table::Kind::text);
+  }
+  return table.text();
+}
+
 /// Returns the sentence about the fresh seeds, or the reason why there are none.
 std::string fresh_words(const RaceResults& results) {
-  if (results.race.winner == 0) return "the config as it stands is the best setting";
+  if (results.description.cost)
+    return fmt::format("{} on the front of {} and {}", counted_settings(results.race.front.size()),
+                       results.description.metric, *results.description.cost);
+  if (results.race.front.front() == 0) return "the config as it stands is the best setting";
   const MeanEstimate gain = fresh_gain(results);
   if (gain.count == 0) return "no fresh seeds were run";
   const DisplayScale scale = scale_of(results);
   std::string words = fmt::format("gain over the config as it stands, on {} that had no part in the choice: {}",
                                   units_words(gain.clusters, true), scale.with_unit(scale.estimate(gain)));
-  if (best_setting(results) == 0)
+  if (best_settings(results).front() == 0)
     words += "; the config as it stands is better and stays the best";
   else if (gain.interval && gain.interval->low <= 0.0)
     words += "; the interval contains 0, so the gain is not certain";
@@ -113,10 +152,13 @@ std::string fresh_words(const RaceResults& results) {
 MeanEstimate fresh_gain(const RaceResults& results) {
   const RaceRecord& race = results.race;
   Clusters gains;
-  for (std::size_t i = 0; i < std::min(race.fresh_of_own.size(), race.fresh_of_winner.size()); ++i) {
-    const auto& own = results.values[race.fresh_of_own[i]];
-    const auto& winner = results.values[race.fresh_of_winner[i]];
-    if (own && winner) gains.push_back({*own - *winner});
+  if (!race.has_ended() || results.description.cost) return {};
+  const std::vector<std::size_t>& own = race.settings[0].fresh;
+  const std::vector<std::size_t>& other = race.settings[race.front.front()].fresh;
+  for (std::size_t i = 0; i < std::min(own.size(), other.size()); ++i) {
+    const auto& first = results.values.metric[own[i]];
+    const auto& second = results.values.metric[other[i]];
+    if (first && second) gains.push_back({*first - *second});
   }
   return gains.empty() ? MeanEstimate{} : mean_of_sample(gains);
 }
@@ -135,9 +177,9 @@ std::vector<Row> race_rows(const RaceResults& results) {
     row.add("lost_after_seeds", loss != nullptr ? std::optional(static_cast<std::int64_t>(loss->seeds)) : std::nullopt);
     row.add("difference", loss != nullptr ? std::optional(loss->difference) : std::nullopt);
     row.add("p", loss != nullptr ? std::optional(loss->p) : std::nullopt);
-    const bool has_ended = results.race.has_ended();
-    row.add("is_best", has_ended && setting == best_setting(results));
-    const MeanEstimate gain = has_ended && setting == results.race.winner ? fresh_gain(results) : MeanEstimate{};
+    row.add("is_best", is_best(results, setting));
+    const std::vector<std::size_t>& front = results.race.front;
+    const MeanEstimate gain = !front.empty() && setting == front.front() ? fresh_gain(results) : MeanEstimate{};
     row.add("fresh_seeds", static_cast<std::int64_t>(gain.clusters));
     row.add("gain", gain.count > 0 ? std::optional(gain.mean) : std::nullopt);
     add_interval(row, "gain_", gain.interval);
@@ -151,7 +193,7 @@ RaceOfPage race_of_page(const RaceResults& results) {
   RaceOfPage out;
   for (std::size_t setting = 0; setting < race.settings.size(); ++setting)
     out.settings.push_back({settings_words(results, setting), remark_about(results, setting, scale),
-                            loss_of(race, setting) != nullptr, race.has_ended() && setting == best_setting(results)});
+                            loss_of(race, setting) != nullptr, is_best(results, setting)});
   if (race.has_ended()) out.end = fmt::format("The race ended because {}; {}.", race.end, fresh_words(results));
   return out;
 }
@@ -177,19 +219,25 @@ std::string race_text(const RaceResults& results) {
   if (!race.has_ended())
     return out + fmt::format("{} runs so far, {} settings are in the race\n", race.race_jobs, race.state.racing.size());
   out += fmt::format("{} runs; the race ended because {}\n", race.race_jobs, race.end);
+  if (results.description.cost) out += front_text(results);
   return out + fresh_words(results) + "\n";
 }
 
-std::string best_config(const RaceResults& results) {
+std::vector<std::size_t> best_settings(const RaceResults& results) {
+  const MeanEstimate gain = fresh_gain(results);
+  return gain.interval && gain.interval->high < 0.0 ? std::vector<std::size_t>{0} : results.race.front;
+}
+
+std::string config_of_setting(const RaceResults& results, std::size_t setting) {
   const RaceRecord& race = results.race;
-  const Job& first = results.sweep.jobs[race.settings[best_setting(results)].jobs.front()];
+  const Job& first = results.sweep.jobs[race.settings[setting].jobs.front()];
   Tree config = read_run_config(job_directory(results.sweep, first));
   config.erase("expect");
   // With a new name, the run gets a folder runs/NAME of its own.
   Tree& name = config.at("name");
   name = Tree::scalar(name.text + "_best", true);
   std::string comment =
-      fmt::format("Best of {} settings: {}\n", race.settings.size(), settings_words(results, best_setting(results)));
+      fmt::format("Best of {} settings: {}\n", race.settings.size(), settings_words(results, setting));
   for (const TunedKey& one : results.description.keys)
     comment += fmt::format("tried: {}={}\n", one.key, value_text(one.written));
   comment += fmt::format("metric: {}; {} runs; {}\n{}", results.description.metric, race.race_jobs, race.end,

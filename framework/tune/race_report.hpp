@@ -17,11 +17,11 @@ struct RaceResults {
   const Sweep& sweep;
   const TuneDescription& description;
   const RaceRecord& race;
-  const std::vector<std::optional<double>>& values;
+  const RaceValues& values;
 };
 
 /// Returns the gain of the winner compared with the config as it stands: the mean difference over the fresh seeds on
-/// which both have a value, above 0 if the winner is better. Without values, MeanEstimate::count is 0.
+/// which both have a value, above 0 if the winner is better. Without values, and on a front, MeanEstimate::count is 0.
 MeanEstimate fresh_gain(const RaceResults& results);
 
 /// Returns one row per setting: number, values of the tuned keys, number of seeds, mean, and for a dropped setting the
@@ -45,8 +45,11 @@ struct RaceOfPage {
 };
 RaceOfPage race_of_page(const RaceResults& results);
 
-/// Returns the config of the best setting as YAML: the winner's, or the config as it stands if the winner is worse on
-/// the fresh seeds (95 % interval below 0). With the course of the race as a comment.
-std::string best_config(const RaceResults& results);
+/// Returns the settings whose configs are written: the settings on the front, or the winner. In place of a winner that is
+/// worse on the fresh seeds (95 % interval of the gain below 0), returns the config as it stands.
+std::vector<std::size_t> best_settings(const RaceResults& results);
+
+/// Returns the config of a setting as YAML, with the course of the race as a comment.
+std::string config_of_setting(const RaceResults& results, std::size_t setting);
 
 }  // namespace palpate

@@ -31,7 +31,7 @@ constexpr const char* kRacing = "racing";
 constexpr const char* kDropped = "dropped";
 constexpr const char* kSeconds = "seconds";
 constexpr const char* kEnd = "end";
-constexpr const char* kWinner = "winner";
+constexpr const char* kFront = "front";
 
 constexpr std::size_t kLeastBudget = 60;  ///< of a search: six settings on four seeds, and the stages after them
 constexpr std::size_t kDrawsPerSetting = 20;
@@ -55,7 +55,7 @@ Row round_row(const RaceDecision& decision, std::optional<double> seconds) {
   if (seconds) row.add(kSeconds, *seconds);
   if (decision.end.empty()) return row;
   row.add(kEnd, decision.end);
-  row.add(kWinner, static_cast<std::int64_t>(decision.winner));
+  row.add(kFront, JsonList{fmt::format("[{}]", fmt::join(decision.front, ", "))});
   return row;
 }
 
@@ -179,11 +179,12 @@ std::vector<PlannedSetting> settings_of_round(const TunePlanner& planner, const 
   std::vector<PlannedSetting> out;
   if (!decision.end.empty()) {
     const std::size_t fresh = planner.description().fresh;
-    if (decision.winner == 0 || fresh == 0) return out;
+    std::vector<std::size_t> compared = decision.front;
+    if (std::count(compared.begin(), compared.end(), std::size_t{0}) == 0) compared.push_back(0);
+    if (compared.size() == 1 || fresh == 0) return out;
     std::size_t used = 0;
     for (const RacedSetting& one : race.settings) used = std::max(used, one.jobs.size());
-    for (const std::size_t one : {std::size_t{0}, decision.winner})
-      out.push_back({values_of_setting(planner, race, one), used, used + fresh});
+    for (const std::size_t one : compared) out.push_back({values_of_setting(planner, race, one), used, used + fresh});
     return out;
   }
   for (const std::size_t one : decision.state.racing) {
@@ -206,12 +207,11 @@ std::size_t count_new_settings(const RaceRecord& race, const std::vector<Job>& j
 }
 
 /// Throws Error if most runs have no value of the metric.
-void check_values(const std::vector<std::optional<double>>& results, const TuneDescription& description,
-                  const Sweep& sweep) {
+void check_values(const std::vector<std::optional<double>>& results, const std::string& field, const Sweep& sweep) {
   const auto missing = std::count(results.begin(), results.end(), std::nullopt);
   if (2 * static_cast<std::size_t>(missing) <= results.size()) return;
   throw Error(sweep.directory.string(),
-              fmt::format("{} of {} runs have no value of '{}'", missing, results.size(), description.metric),
+              fmt::format("{} of {} runs have no value of '{}'", missing, results.size(), field),
               "see 'palpate compare' for the reasons, or tune another metric");
 }
 
@@ -231,9 +231,9 @@ RaceRecord read_race(const Sweep& sweep, const TuneDescription& description) {
     for (; next < round.jobs; ++next) {
       const std::vector<std::string> values = tuned_values(sweep.jobs[next], keys);
       const auto [number, is_new] = numbers.emplace(values, out.settings.size());
-      if (is_new) out.settings.push_back({values, {}});
-      std::vector<std::size_t>& fresh = number->second == 0 ? out.fresh_of_own : out.fresh_of_winner;
-      (is_fresh ? fresh : out.settings[number->second].jobs).push_back(next);
+      if (is_new) out.settings.push_back({values, {}, {}});
+      RacedSetting& setting = out.settings[number->second];
+      (is_fresh ? setting.fresh : setting.jobs).push_back(next);
     }
     if (!is_fresh) out.race_jobs = next;
     const std::size_t all = out.settings.size();
@@ -249,17 +249,26 @@ RaceRecord read_race(const Sweep& sweep, const TuneDescription& description) {
                whole(last, kSeeds, sweep.jobs.size() + 1, sweep), numbers_in(last, kRacing, all, sweep)};
   out.seconds = last.number(kSeconds).value_or(0.0);
   out.end = last.text(kEnd);
-  if (out.has_ended()) out.winner = whole(last, kWinner, all, sweep);
+  if (!out.has_ended()) return out;
+  out.front = numbers_in(last, kFront, all, sweep);
+  if (out.front.empty())
+    throw Error((sweep.directory / "manifest.jsonl").string(), "the last round names no best setting",
+                "the file is damaged: put it back as it was");
   return out;
 }
 
-void read_results(const Sweep& sweep, const TuneDescription& description, std::vector<std::optional<double>>& out) {
+void read_results(const Sweep& sweep, const TuneDescription& description, RaceValues& out) {
   std::vector<std::size_t> next = all_jobs(sweep);
-  next.erase(next.begin(), next.begin() + static_cast<std::ptrdiff_t>(out.size()));
+  next.erase(next.begin(), next.begin() + static_cast<std::ptrdiff_t>(out.metric.size()));
+  const auto value_of = [](const std::optional<Row>& row, const std::string& field) -> std::optional<double> {
+    const JobValue value = value_of_job(row ? &*row : nullptr, field, "--metric");
+    return value.status == ValueStatus::counted ? std::optional(value.value) : std::nullopt;
+  };
   read_jobs(sweep, next, read_outcome, [&](std::size_t, const std::optional<Row>& row) {
-    const JobValue value = value_of_job(row ? &*row : nullptr, description.metric, "--metric");
-    const bool counts = value.status == ValueStatus::counted;
-    out.push_back(counts ? std::optional(description.more_is_better ? -value.value : value.value) : std::nullopt);
+    std::optional<double> value = value_of(row, description.metric);
+    if (value && description.more_is_better) value = -*value;
+    out.metric.push_back(value);
+    if (description.cost) out.cost.push_back(value_of(row, *description.cost));
   });
 }
 
@@ -314,23 +323,25 @@ fs::path race_directory(const TunePlanner& planner, const fs::path& runs) {
 }
 
 bool add_round(const TunePlanner& planner, const fs::path& directory, std::size_t budget, double seconds,
-               std::vector<std::optional<double>>& results) {
+               RaceValues& results) {
   const TuneDescription& description = planner.description();
   const FileLock lock = FileLock::wait_for(directory / "lock");
   const Sweep sweep = read_sweep(directory);
   RaceRecord race = read_race(sweep, description);
   read_results(sweep, description, results);
   if (race.has_ended()) return false;
-  check_values(results, description, sweep);
-  const RaceTable table = race_table(race, results);
+  check_values(results.metric, description.metric, sweep);
+  if (description.cost) check_values(results.cost, *description.cost, sweep);
+  const RaceTable table = race_table(race, results.metric);
+  const RaceTable costs = description.cost ? race_table(race, results.cost) : RaceTable();
   const RaceRules rules{!planner.space().is_finite(), description.within};
   std::set<std::string> known;
   for (const Job& job : sweep.jobs) known.insert(job.id);
   std::vector<Loser> losers;
   for (;;) {
-    RaceDecision decision = decide(rules, race.state, table, budget, race.race_jobs);
-    check_unchanged(planner, sweep, race,
-                    decision.end.empty() ? decision.state.racing : std::vector<std::size_t>{decision.winner});
+    RaceDecision decision =
+        decide(rules, race.state, table, description.cost ? &costs : nullptr, budget, race.race_jobs);
+    check_unchanged(planner, sweep, race, decision.end.empty() ? decision.state.racing : decision.front);
     const std::vector<PlannedSetting> settings = settings_of_round(planner, race, decision, sweep.rounds.size());
     std::vector<Job> jobs;
     if (!settings.empty()) {

@@ -18,19 +18,19 @@ namespace palpate {
 /// A setting that has run in a race.
 struct RacedSetting {
   std::vector<std::string> values;  ///< values of the tuned keys, as in Job::values
-  std::vector<std::size_t> jobs;    ///< its jobs on the first seeds, in the order of the seeds; without fresh seeds
+  std::vector<std::size_t> jobs;    ///< its jobs on the first seeds, in the order of the seeds
+  std::vector<std::size_t> fresh;   ///< its jobs on fresh seeds, likewise
 };
 
 /// A race as the manifest of its sweep has it.
 struct RaceRecord {
-  std::vector<RacedSetting> settings;                      ///< setting 0 is the config as it stands
-  RaceState state;                                         ///< after the last round
-  std::vector<Loser> losers;                               ///< of all rounds; Loser::row is the number of a setting
-  std::string end;                                         ///< reason why the race ended; "" if it goes on
-  std::size_t winner = 0;                                  ///< only if it ended
-  std::vector<std::size_t> fresh_of_winner, fresh_of_own;  ///< jobs on fresh seeds, in the order of the seeds
-  std::size_t race_jobs = 0;                               ///< number of jobs without those on fresh seeds
-  double seconds = 0.0;  ///< wall time until the last decision, if the budget is a time; else 0
+  std::vector<RacedSetting> settings;  ///< setting 0 is the config as it stands
+  RaceState state;                     ///< after the last round
+  std::vector<Loser> losers;           ///< of all rounds; Loser::row is the number of a setting
+  std::string end;                     ///< reason why the race ended; "" if it goes on
+  std::vector<std::size_t> front;  ///< the winner, or the settings on the front of metric and cost; only if it ended
+  std::size_t race_jobs = 0;       ///< number of jobs without those on fresh seeds
+  double seconds = 0.0;            ///< wall time until the last decision, if the budget is a time; else 0
 
   bool has_ended() const { return !end.empty(); }
 };
@@ -38,9 +38,14 @@ struct RaceRecord {
 /// Reads the race of a sweep with rounds. Throws Error for a damaged round.
 RaceRecord read_race(const Sweep& sweep, const TuneDescription& description);
 
-/// Appends the results of the jobs after the first `out.size()`: the metric, or its negative if more is better, so that
-/// less is better; nullopt for a run that failed or has no finite value. All jobs must have ended.
-void read_results(const Sweep& sweep, const TuneDescription& description, std::vector<std::optional<double>>& out);
+/// The results of the jobs of a race; nullopt for a run that failed or has no finite value.
+struct RaceValues {
+  std::vector<std::optional<double>> metric;  ///< the metric, or its negative if more is better: less is better
+  std::vector<std::optional<double>> cost;    ///< empty if there is no cost
+};
+
+/// Appends the results of the jobs after the first `out.metric.size()`. All jobs must have ended.
+void read_results(const Sweep& sweep, const TuneDescription& description, RaceValues& out);
 
 /// Returns one row per setting: its results in the order of the seeds. A missing result counts as the worst result of
 /// the whole race, because a setting whose runs fail must not win.
@@ -62,6 +67,6 @@ SweepPlan plan_first_round(const TunePlanner& planner, std::size_t budget, const
 /// Throws Error if most runs of the first round have no value, or if the groups of the config were changed since the
 /// first round.
 bool add_round(const TunePlanner& planner, const std::filesystem::path& directory, std::size_t budget, double seconds,
-               std::vector<std::optional<double>>& results);
+               RaceValues& results);
 
 }  // namespace palpate

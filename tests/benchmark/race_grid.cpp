@@ -40,8 +40,8 @@ RaceOutcome race(const RaceTable& grid, const std::vector<std::size_t>& order) {
       for (; results[setting].size() < state.seeds; ++out.jobs)
         results[setting].push_back(grid[setting][order[results[setting].size()]]);
     }
-    const RaceDecision decision = decide(rules, state, results, state.stage_end, out.jobs);
-    out.winner = decision.winner;
+    const RaceDecision decision = decide(rules, state, results, nullptr, state.stage_end, out.jobs);
+    if (!decision.front.empty()) out.winner = decision.front.front();
     // The recorded seeds are used up before the budget, because other settings have left jobs over.
     if (!decision.end.empty()) return out;
     if (decision.state.seeds > order.size()) {

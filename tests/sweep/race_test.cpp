@@ -62,7 +62,7 @@ RaceEnd run_race(const RaceRules& rules, std::size_t settings, std::size_t budge
       for (; results[setting].size() < state.seeds; ++out.jobs)
         results[setting].push_back(value(setting, results[setting].size()));
     }
-    RaceDecision decision = decide(rules, state, results, budget, out.jobs);
+    RaceDecision decision = decide(rules, state, results, nullptr, budget, out.jobs);
     if (check) check(decision);
     out.losers.insert(out.losers.end(), decision.losers.begin(), decision.losers.end());
     for (std::size_t i = 0; i < decision.new_settings; ++i) {
@@ -70,7 +70,7 @@ RaceEnd run_race(const RaceRules& rules, std::size_t settings, std::size_t budge
       results.emplace_back();
     }
     out.settings = results.size();
-    out.winner = decision.winner;
+    if (!decision.front.empty()) out.winner = decision.front.front();
     out.reason = decision.end;
     if (!decision.end.empty()) return out;
     state = decision.state;
@@ -141,6 +141,80 @@ TEST(Losers, AreRareAmongEqualSettings) {
   // The worse of two equal settings is tested, so the share is twice the one-sided level.
   EXPECT_LT(dropped, 130);
   EXPECT_GT(dropped, 40);
+}
+
+TEST(Dominated, AreSettingsThatAreWorseInOneMetricAndNotBetterInTheOther) {
+  const RaceTable errors = drawn({1.0, 5.0, 5.0, 9.0, 1.0}, 8, 0.1, 1);
+  // The second setting is cheaper than the first one, the third dearer; the fourth is the cheapest of all; the fifth
+  // costs the same as the first one, and is as good.
+  const std::vector<double> cost{10.0, 5.0, 20.0, 1.0, 10.0};
+  RaceTable costs;
+  for (const double one : cost) costs.emplace_back(8, one);
+  const std::vector<Loser> losers = find_dominated(errors, costs, 0.01, 1);
+  ASSERT_THAT(losers, SizeIs(1));
+  EXPECT_EQ(losers[0].row, 2U);
+  EXPECT_NEAR(losers[0].difference, 4.0, 0.3);
+  EXPECT_THAT(find_dominated(errors, costs, 0.01, 5), IsEmpty()) << "all are to be kept";
+}
+
+TEST(Dominated, AreNoneIfEachSettingIsTheBestInSomething) {
+  RaceTable errors;
+  RaceTable costs;
+  for (int i = 0; i < 5; ++i) {
+    errors.emplace_back(6, i);
+    costs.emplace_back(6, -i);
+  }
+  EXPECT_THAT(find_dominated(errors, costs, 0.05, 1), IsEmpty());
+  EXPECT_THAT(front_of_means(errors, costs), ElementsAre(0, 1, 2, 3, 4));
+  costs[2] = std::vector<double>(6, 0.5);
+  EXPECT_THAT(front_of_means(errors, costs), ElementsAre(0, 1, 3, 4)) << "the second is as good and cheaper";
+}
+
+TEST(Race, OfTwoMetricsKeepsSettingsFromBothEndsOfTheFront) {
+  const RaceTable noise = drawn(std::vector<double>(500, 0.0), 500, 0.5, 8);
+  std::vector<double> position;  // error is the position, cost its negative, both plus a distance from the front
+  std::vector<double> distance;
+  Random random(4, "front");
+  for (int i = 0; i < 40; ++i) {
+    position.push_back(20.0 * random.uniform());
+    distance.push_back(10.0 * random.uniform());
+  }
+  RaceTable results(40);
+  RaceTable costs(40);
+  RaceState state;
+  const RaceRules rules{true, 0.0};
+  state.stage_end = first_stage_end(rules, 500);
+  for (std::size_t i = 0; i < 40; ++i) state.racing.push_back(i);
+  std::size_t jobs = 0;
+  RaceDecision decision;
+  while (decision.end.empty()) {
+    for (const std::size_t one : state.racing) {
+      for (; results[one].size() < state.seeds; ++jobs) {
+        const double value = noise[one][results[one].size()] + distance[one];
+        results[one].push_back(position[one] + value);
+        costs[one].push_back(value - position[one]);
+      }
+    }
+    decision = decide(rules, state, results, &costs, 500, jobs);
+    for (std::size_t i = 0; i < decision.new_settings; ++i) {
+      const std::size_t parent = decision.elites[random.index(decision.elites.size())];
+      decision.state.racing.push_back(results.size());
+      results.emplace_back();
+      costs.emplace_back();
+      position.push_back(position[parent] + random.uniform() - 0.5);
+      distance.push_back(std::abs(distance[parent] + 2.0 * (random.uniform() - 0.7)));
+    }
+    state = decision.state;
+  }
+  ASSERT_GE(decision.front.size(), 3U);
+  std::vector<double> kept;
+  for (const std::size_t one : decision.front) {
+    kept.push_back(position[one]);
+    EXPECT_LT(distance[one], 3.0);
+  }
+  EXPECT_TRUE(std::is_sorted(kept.begin(), kept.end(), [](double a, double b) { return a < b - 1.5; }));
+  EXPECT_LT(*std::min_element(kept.begin(), kept.end()), 6.0);
+  EXPECT_GT(*std::max_element(kept.begin(), kept.end()), 14.0);
 }
 
 TEST(Race, OverAListFindsTheBestSettingWithAFractionOfTheRuns) {

@@ -111,6 +111,31 @@ TEST_F(Tune, EndsAtOnceIfAKeyHasNoEffect) {
   EXPECT_THAT(ended.out, HasSubstr("the config as it stands is the best setting"));
 }
 
+TEST_F(Tune, KeepsTheFrontOfErrorAndCostAndWritesItsConfigs) {
+  const Words words{"tune",
+                    paper(),
+                    "taps=uniform(5,40)",
+                    "acquisition=weighted,uncertainty",
+                    "--metric",
+                    "rmse_m",
+                    "--cost",
+                    "robot_seconds",
+                    "--jobs",
+                    "120",
+                    "--fresh",
+                    "6",
+                    "--quiet"};
+  const test::Ended ended = palpate(words);
+  ASSERT_EQ(ended.status, 0) << ended.err;
+  EXPECT_THAT(ended.out, AllOf(HasSubstr("on the front of rmse_m and robot_seconds"), HasSubstr("on fresh seeds")));
+  EXPECT_TRUE(fs::exists(directory() / "front_1.yaml"));
+  EXPECT_TRUE(fs::exists(directory() / "front_2.yaml")) << "more taps give a smaller error";
+  EXPECT_FALSE(fs::exists(directory() / "best.yaml"));
+  EXPECT_EQ(palpate({"run", (directory() / "front_2.yaml").string(), "--quiet", "--runs", "again"}).status, 0);
+  EXPECT_THAT(refused_race({"taps=5,6", "--metric", "rmse_m", "--cost", "footprint_iou", "--jobs", "99"}),
+              HasSubstr("'footprint_iou' is not a cost"));
+}
+
 TEST_F(Tune, StopsIfTheGroupsOfTheConfigWereChangedSinceItBegan) {
   write("configs/kernel/own.yaml", "kernel: {type: rbf, length_scale: 2 cm}\n");
   write("configs/mine.yaml", text_of(paper()));

@@ -95,7 +95,7 @@ def sweep(config, *axes, runs="runs", workers=None, progress=None, **settings) -
     return made
 
 
-def tune(config, keys, *, metric, jobs=None, time=None, within=None, fresh=None, over=None, where=None, runs="runs",
+def tune(config, keys, *, metric, cost=None, jobs=None, time=None, within=None, fresh=None, over=None, where=None, runs="runs",
          workers=None, progress=None) -> Race:
     """Finds the best setting of some keys, as `palpate tune CONFIG KEY=RANGE ... --metric FIELD --jobs N` does.
 
@@ -105,7 +105,7 @@ def tune(config, keys, *, metric, jobs=None, time=None, within=None, fresh=None,
     also if runs have not ended.
     """
     words = [f"{key}={_program.values_text(value)}" for key, value in keys.items()]
-    options = {"--metric": metric, "--jobs": jobs, "--time": time, "--within": within, "--fresh": fresh, "--where": where,
+    options = {"--metric": metric, "--cost": cost, "--jobs": jobs, "--time": time, "--within": within, "--fresh": fresh, "--where": where,
                "--over": over and ",".join(over), "--runs": _os.fspath(runs), "-j": workers}
     words += [text for name, value in options.items() if value is not None for text in (name, str(value))]
     status, said = _program.conduct([_palpate.program, "tune", _os.fspath(config), *words], progress)

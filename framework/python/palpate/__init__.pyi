@@ -187,6 +187,7 @@ def tune(
     keys: Mapping[str, Any],
     *,
     metric: str,
+    cost: str | None = None,
     jobs: int | None = None,
     time: str | None = None,
     within: str | None = None,

@@ -32,7 +32,7 @@ Json json_of_race(const Sweep& sweep) {
   const Tree config = read_run_config(sweep.directory);
   const TuneDescription description(config.find("tune"), {});
   const RaceRecord race = read_race(sweep, description);
-  std::vector<std::optional<double>> values;
+  RaceValues values;
   read_results(sweep, description, values);
   const RaceOfPage words = race_of_page({sweep, description, race, values});
   Json keys = Json::array();

@@ -69,7 +69,7 @@ def by_palpate(build, _, jobs, first_seed):
                        check=True, stdout=subprocess.DEVNULL)
         race = next(os.path.join(path, "race.csv") for path, _, files in os.walk(folder) if "race.csv" in files)
         with open(os.path.join(os.path.dirname(race), "manifest.jsonl"), encoding="utf-8") as lines:
-            winner = json.loads(lines.readlines()[-1])["winner"]
+            winner = json.loads(lines.readlines()[-1])["front"][0]
         with open(race, encoding="utf-8") as lines:
             head, *rows = [line.rstrip("\n").split(",") for line in lines]
     row = dict(zip(head, rows[winner]))
