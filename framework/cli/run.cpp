@@ -128,9 +128,11 @@ int run(CommandEnvironment& program, const RunArguments& arguments) {
     config = resolve_experiment(composed, program.host);
   });
   if (trouble) throw axis_error(overrides, arguments.overrides, *trouble);
-  if (const Tree* sweep = composed.find("sweep"); sweep != nullptr && !arguments.quiet) {
-    print_message(fmt::format("{}: sweep: is ignored by 'palpate run'; 'palpate sweep' runs all its jobs\n",
-                              sweep->place.text()));
+  for (const char* const block : {"sweep", "tune"}) {
+    const Tree* found = composed.find(block);
+    if (found == nullptr || arguments.quiet) continue;
+    print_message(fmt::format("{0}: {1}: is ignored by 'palpate run'; 'palpate {1}' runs all its jobs\n",
+                              found->place.text(), block));
   }
   if (arguments.print_config) {
     print_resolved_config(program, arguments, config);

@@ -114,6 +114,24 @@ void sweep_schema(Tree& sweep) {
   blocks.at("where") = any_of({of_type("string", condition), several});
 }
 
+/// Fills the schema of `tune:`.
+void tune_schema(Tree& tune) {
+  tune.at("type") = Tree::quote("object");
+  tune.at("additionalProperties") = Tree::scalar("false");
+  Tree& properties = tune.at("properties");
+  properties.at("keys") =
+      of_type("object", "keys whose values are searched: lists, uniform(1 cm, 5 cm), log_uniform(...)");
+  properties.at("jobs") = of_type("integer", "budget: number of runs");
+  properties.at("fresh") = of_type("integer", "number of seeds for the comparison with the config as it stands");
+  properties.at("over") = of_type("array", "scenes that alternate from seed to seed");
+  for (const auto& [name, meaning] : {std::pair("metric", "field of the summary whose mean over the seeds decides"),
+                                      std::pair("cost", "second field; the race then keeps the Pareto front"),
+                                      std::pair("time", "budget in wall time, for example 10 min"),
+                                      std::pair("within", "difference to the best setting at which the race may end")})
+    properties.at(name) = of_type("string", meaning);
+  properties.at("where") = any_of({of_type("string"), of_type("array")});
+}
+
 struct SchemaArguments {};
 
 int schema(CommandEnvironment& program, const SchemaArguments&) {
@@ -133,6 +151,7 @@ int schema(CommandEnvironment& program, const SchemaArguments&) {
   for (const Field& field : keys_beside_options()) properties.at(field.name) = of_type("string", field.meaning);
   defaults_schema(properties.at("defaults"));
   sweep_schema(properties.at("sweep"));
+  tune_schema(properties.at("tune"));
   expect_schema(properties.at("expect"));
   Tree& definitions = out.at("definitions") = Tree::map();
   for (const std::string& kind : PluginHost::kinds())

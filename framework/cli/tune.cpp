@@ -224,6 +224,15 @@ int tune(CommandEnvironment& program, const TuneArguments& arguments) {
   return run_race(program, directory, arguments.launch, {});
 }
 
+std::size_t check_tune(CommandEnvironment& program, const std::string& config) {
+  const Tree composed = program.composer.compose(program.composer.found(config), {});
+  const TuneDescription description(composed.find("tune"), {});
+  const TunePlanner planner(program.composer, program.host, config, description);
+  const auto ignore = [](const Job&, const ResolvedConfig&) {};
+  return plan_first_round(planner, description.jobs.value_or(kJobsOfTime), "runs", ignore).sweep.jobs.size() /
+         kFirstSeeds;
+}
+
 int resume_race(CommandEnvironment& program, const ResumeArguments& arguments) {
   checked_launcher(arguments.launch);
   if (arguments.step)

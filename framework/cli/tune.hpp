@@ -23,18 +23,21 @@ PALPATE_WHOLE int tune(CommandEnvironment& program, const TuneArguments& argumen
 /// Continues the race in a directory for which is_race() is true. Returns the exit status.
 PALPATE_WHOLE int resume_race(CommandEnvironment& program, const ResumeArguments& arguments);
 
+/// Checks the block `tune:` of the file `config`. Returns the number of settings of its first round. Throws Error.
+PALPATE_WHOLE std::size_t check_tune(CommandEnvironment& program, const std::string& config);
+
 inline void add_tune(CommandLine& line) {
   auto [command, tune_arguments] =
       line.add<TuneArguments>("tune", "Find the best setting of some keys with few runs", tune, kNeedsEverything);
   command.argument("CONFIG", tune_arguments.config, "CONFIG",
                    "YAML file of the experiment, optionally with a 'tune:' block", {required()});
-  command.argument("KEY", tune_arguments.keys, "KEY=RANGE",
+  command.argument("KEY", tune_arguments.keys, "KEY=VALUES",
                    "key and the values among which the best one is searched, for example "
                    "kernel.length_scale=log_uniform(5mm,10cm) or acquisition=weighted,random. A single value, such as "
                    "seed=1000, applies to all runs");
-  command.argument("--metric", tune_arguments.metric, "FIELD",
+  command.argument("--metric", tune_arguments.metric, "COLUMN",
                    "field of the summary whose mean over the seeds decides, for example rmse_m");
-  command.argument("--cost", tune_arguments.cost, "FIELD",
+  command.argument("--cost", tune_arguments.cost, "COLUMN",
                    "second field, of which less is better, for example robot_seconds. Keep the Pareto front of both "
                    "instead of one setting");
   const Argument jobs = command.argument("--jobs", tune_arguments.jobs, "N",
@@ -54,10 +57,8 @@ inline void add_tune(CommandLine& line) {
   command.argument("--runs", tune_arguments.runs, "FOLDER", kRunsHelp, {with_default()});
   add_launch(command, tune_arguments.launch);
   command.examples(
-      {"palpate tune configs/paper/object_i.yaml \"kernel.length_scale=log_uniform(5mm,10cm)\" "
-       "acquisition=weighted,uncertainty --metric rmse_m --jobs 400",
-       "palpate tune configs/default.yaml belief.height.noise=2mm,4mm,6mm --metric rmse_m --jobs 200 "
-       "--over block,ring"});
+      {"palpate tune configs/default.yaml \"kernel.length_scale=uniform(1cm,9cm)\" --metric rmse_m --jobs 200",
+       "palpate tune configs/default.yaml belief.height.noise=2mm,6mm --over block,ring --metric rmse_m --jobs 99"});
 }
 
 }  // namespace palpate::cli

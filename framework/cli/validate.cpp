@@ -3,6 +3,7 @@
 #include "cli/display.hpp"
 #include "cli/output.hpp"
 #include "cli/sweep.hpp"
+#include "cli/tune.hpp"
 #include "config/catch_error.hpp"
 #include "scene/size_warnings.hpp"
 
@@ -27,6 +28,7 @@ int validate(CommandEnvironment& program, const ValidateArguments& arguments) {
     // All files are checked, so that one command reports every invalid file.
     const std::optional<Error> trouble = catch_error([&] {
       const Tree tree = program.composer.compose(file, {});
+      if (tree.find("tune") != nullptr) call_in_whole(check_tune, program, file);
       if (tree.find("sweep") != nullptr) {
         said.emplace_back(
             true, fmt::format("{}: valid, a sweep of {} jobs\n", file, call_in_whole(jobs_of_sweep, program, file)));

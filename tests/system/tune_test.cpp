@@ -101,6 +101,16 @@ TEST_F(Tune, RejectsInOneLineWhatCannotBeRacedAndBeginsNothing) {
   EXPECT_TRUE(left_nothing());
 }
 
+TEST_F(Tune, OfAConfigIsCheckedByValidateAndIgnoredByRun) {
+  const std::string config = text_of(paper()) + "tune:\n  keys: {taps: [14, 15]}\n  metric: rmse_m\n  jobs: ";
+  const fs::path good = write("good.yaml", config + "40\n");
+  const fs::path bad = write("bad.yaml", config + "8\n");
+  EXPECT_EQ(palpate({"validate", good}).status, 0);
+  EXPECT_THAT(palpate({"validate", bad}).err, HasSubstr("8 jobs are fewer than the first round needs"));
+  EXPECT_THAT(run({}, good).err, HasSubstr("tune: is ignored by 'palpate run'; 'palpate tune' runs all its jobs"));
+  EXPECT_EQ(palpate({"tune", good, "--quiet", "--fresh", "0"}).status, 0);
+}
+
 TEST_F(Tune, EndsAtOnceIfAKeyHasNoEffect) {
   const test::Ended ended =
       palpate({"tune", paper(), "belief.height.noise=0.1mm,0.2mm,0.3mm", "acquisition=random", "--metric", "rmse_m",
