@@ -58,7 +58,7 @@ inline void add_tune(CommandLine& line) {
   add_launch(command, tune_arguments.launch);
   command.examples(
       {"palpate tune configs/default.yaml \"kernel.length_scale=uniform(1cm,9cm)\" --metric rmse_m --jobs 200",
-       "palpate tune configs/default.yaml belief.height.noise=2mm,6mm --over block,ring --metric rmse_m --jobs 99"});
+       "palpate tune configs/default.yaml belief.height.noise=2mm,6mm --metric rmse_m --jobs 90 --over t,ring"});
 }
 
 }  // namespace palpate::cli

@@ -22,8 +22,8 @@ std::vector<FieldDescription> all_fields() {
 }
 
 TEST(ConfigKeys, OfTheRunAreTheWorldTheBudgetAndWhatIsKeptAndAllElseIsAStrategys) {
-  const std::set<std::string> of_run{"name",    "seed", "taps",     "candidates", "scene",
-                                     "backend", "log",  "complete", "expect",     "sweep"};
+  const std::set<std::string> of_run{"name", "seed",     "taps",   "candidates", "scene", "backend",
+                                     "log",  "complete", "expect", "sweep",      "tune"};
   std::set<std::string> found;
   for (const FieldDescription& field : all_fields()) {
     if (field.owner == Owner::run) found.insert(field.name);
