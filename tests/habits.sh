@@ -8,10 +8,11 @@
 set -eu
 cd "$(dirname "$(readlink -f "$0")")/.."
 found=$(mktemp -d)
-trap 'rm -rf "$found"' EXIT
+generated=$(mktemp -d)
+trap 'rm -rf "$found" "$generated"' EXIT
 
 # A folder uses those above it in this list, which is that of framework/README.md, never those below.
-folders="math children reading answers regular config host scene gp belief experiment record sweep launch analysis calibrate report watch cli"
+folders="math children reading answers regular config host scene gp belief experiment record sweep launch analysis tune calibrate report watch cli"
 # The folders of palpate_core.
 core="framework/config framework/host framework/scene framework/gp framework/belief framework/experiment framework/record"
 for file in $(git ls-files 'framework/*.[ch]pp' ':!framework/include' ':!framework/shared' ':!framework/python'); do
@@ -223,7 +224,10 @@ fi
 # what it says.
 each() { echo "$1" | xargs -r -P "$(nproc)" -I FILE sh -c "{ $2; } >\$(mktemp $found/each.XXXXXX) 2>/dev/null || true"; }
 
-includes="-Iframework/shared -Iframework -Iframework/include -isystem /usr/include/eigen3 $(/usr/bin/python3-config --includes 2>/dev/null || true)"
+# The build writes the table of launchers; one entry is enough here.
+mkdir "$generated/launch"
+echo 'PALPATE_LAUNCHER(local, false)' >"$generated/launch/launcher_table.inc"
+includes="-I$generated -Iframework/shared -Iframework -Iframework/include -isystem /usr/include/eigen3 $(/usr/bin/python3-config --includes 2>/dev/null || true)"
 # Highway's header is read once for each instruction set, by a file that has named itself.
 each "$(echo "$changed" | grep '^framework/.*\.hpp$' | grep -v '^framework/shared/math/highway\.hpp$')" \
   "g++ -std=c++17 -fsyntax-only $includes -x c++ FILE || echo 'FILE: does not stand alone: it lacks an include'"

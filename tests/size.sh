@@ -25,15 +25,15 @@ framework/experiment 1560 0 # initial design and best score in files of their ow
 framework/gp 2580 0 # the offset model; checks of maps for finite numbers
 framework/host 827 0
 framework/include 1125 0 # beliefs as plugins: grids of taps, settings of the run, phases
-framework/launch 956 0 # a table of launchers
-framework/python 750 630 # one file per class of the module; lines of any direction
+framework/launch 990 0 # a cluster continues a race; a table of launchers
+framework/python 750 715 # tune; one file per class of the module; lines of any direction
 framework/record 4641 0
-framework/report 5822 97 # facts of pages are computed in C++
+framework/report 5960 97 # the page of a race; facts of pages are computed in C++
 framework/scene 749 0
 framework/shared 1392 0 # counts of factorisations for beliefs
 plugins/beliefs 3060 9 # the belief solids
 framework/sweep 1975 0 # rounds; pooled records in files of their own
-framework/tune 1330 0 # the race of palpate tune
+framework/tune 1430 0 # the race of palpate tune
 framework/watch 714 0
 plugins 33 78
 plugins/acquisitions 799 96 # each folder builds itself
@@ -44,22 +44,22 @@ plugins/kernels 547 9 # each folder builds itself
 plugins/programs 520 14 # each folder builds itself
 plugins/shapes 2026 28 # each folder builds itself
 plugins/starters 286 28 # a belief without a GP, with a field of its own
-tests 0 1980 # reasons for counts of instructions, campaigns by name, checks of packages for ARM, sizes of classes
+tests 0 2025 # palpate tune; reasons for counts of instructions, campaigns by name, checks of packages for ARM, sizes of classes
 tests/bad_plugins 447 49
 tests/baxter 5676 0
-tests/benchmark 1071 857
+tests/benchmark 1155 1000 # race_grid; irace and Optuna
 tests/consumer 165 0
 tests/contract 1520 0 # laws of beliefs
 tests/crash 414 434
 tests/fake_baxter 2425 47
 tests/fuzz 380 0
-tests/python 0 1181 # taps from any side by ask and tell
+tests/python 0 1235 # tune; taps from any side by ask and tell
 tests/report 1301 85
-tests/slurm 483 0
+tests/slurm 515 0 # races
 tests/stability 2435 0
 tests/support 2295 0 # the simulator as a program of the backend process; grids of candidates, which only tests make
-tests/sweep 4085 0
-tests/system 9280 0 # lines of any direction for programs and records; beliefs
+tests/sweep 4990 0 # races, power, importance
+tests/system 9680 0 # tune; lines of any direction for programs and records; beliefs
 tests/unit 17395 0 # oracles of the footprint: pushes, calibration, enumeration, joint distribution; strategies over other beliefs
 tests/ur_rtde 0 230
 tests/versions 50 17

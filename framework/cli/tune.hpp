@@ -5,6 +5,11 @@
 #include "cli/command_line.hpp"
 #include "cli/launch_options.hpp"
 
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
 namespace palpate::cli {
 
 struct ResumeArguments;
