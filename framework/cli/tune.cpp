@@ -93,7 +93,8 @@ std::size_t budget_of(const TuneDescription& description, std::size_t jobs, doub
 class RaceLine {
  public:
   explicit RaceLine(bool quiet) : quiet_(quiet), terminal_(::isatty(STDERR_FILENO) != 0) {}
-  void show(const RaceRecord& race, std::size_t budget) {
+  void show(const RaceRecord& race) {
+    const std::size_t budget = race.state.budget;
     const std::size_t tenth = 10 * race.race_jobs / std::max<std::size_t>(budget, 1);
     if (quiet_ || (!terminal_ && tenth == tenth_ && !race.has_ended())) return;
     tenth_ = tenth;
@@ -158,9 +159,7 @@ int run_race(CommandEnvironment& program, const fs::path& directory, const Launc
   for (;;) {
     const Sweep sweep = read_sweep(directory);
     const RaceRecord race = read_race(sweep, description);
-    const double seconds = before + seconds_since(begin);
-    const std::size_t budget = budget_of(description, race.race_jobs, seconds);
-    line.show(race, budget);
+    line.show(race);
     SweepExecution execution{program, sweep, options, silent, {}, false, {}, next_command(directory, launch, options)};
     std::vector<std::size_t> jobs = all_jobs(sweep);
     jobs.erase(jobs.begin(), jobs.begin() + static_cast<std::ptrdiff_t>(values.metric.size()));
@@ -179,7 +178,8 @@ int run_race(CommandEnvironment& program, const fs::path& directory, const Launc
       print_out("resume with: palpate resume {}\n", directory.string());
       return program.interrupted->load() ? kInterrupted : kFailed;
     }
-    if (add_round(planner, directory, budget, seconds, values)) continue;
+    const double seconds = before + seconds_since(begin);
+    if (add_round(planner, directory, budget_of(description, race.race_jobs, seconds), seconds, values)) continue;
     print_race({sweep, description, race, values});
     set_record_line("record: " + directory.string());
     print_out("record: {}\n", directory.string());

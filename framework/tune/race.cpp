@@ -116,6 +116,9 @@ RaceDecision decide(const RaceRules& rules, const RaceState& state, const RaceTa
                     std::size_t budget, std::size_t jobs) {
   RaceDecision out;
   out.state = state;
+  // A budget in time is known better after each round, and the end of the stage moves with it.
+  if (budget != state.budget) out.state.stage_end = state.stage_end * budget / std::max<std::size_t>(state.budget, 1);
+  out.state.budget = budget;
   const auto end = [&](const char* reason) {
     out.end = reason;
     out.front = costs != nullptr ? front_settings(out.state, results, *costs)

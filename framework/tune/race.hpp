@@ -33,6 +33,7 @@ struct RaceRules {
 /// The state of a race after a round.
 struct RaceState {
   std::size_t stage = 0;
+  std::size_t budget = 0;           ///< number of jobs of the whole race, as it was known at the last decision
   std::size_t stage_end = 0;        ///< number of jobs at which the stage ends
   std::size_t seeds = kFirstSeeds;  ///< number of the first seeds on which all racing settings run
   std::vector<std::size_t> racing;  ///< numbers of the settings in the race, ascending

@@ -92,7 +92,9 @@ DisplayScale scale_of(const RaceResults& results) {
   return readable_scale(unit_of_column(results.description.metric), means);
 }
 
-std::string counted_settings(std::size_t count) { return fmt::format("{} setting{}", count, count == 1 ? " is" : "s are"); }
+std::string counted_settings(std::size_t count) {
+  return fmt::format("{} setting{}", count, count == 1 ? " is" : "s are");
+}
 
 /// Returns the mean of a field over the fresh seeds of a setting, with its interval.
 MeanEstimate fresh_mean(const RacedSetting& setting, const std::vector<std::optional<double>>& values, double sign) {
@@ -110,7 +112,8 @@ std::string front_text(const RaceResults& results) {
   if (std::count(settings.begin(), settings.end(), std::size_t{0}) == 0) settings.push_back(0);
   std::vector<std::vector<MeanEstimate>> means(2);
   for (const std::size_t one : settings) {
-    means[0].push_back(fresh_mean(race.settings[one], results.values.metric, results.description.more_is_better ? -1 : 1));
+    means[0].push_back(
+        fresh_mean(race.settings[one], results.values.metric, results.description.more_is_better ? -1 : 1));
     means[1].push_back(fresh_mean(race.settings[one], results.values.cost, 1));
   }
   Table table;

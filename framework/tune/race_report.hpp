@@ -45,8 +45,8 @@ struct RaceOfPage {
 };
 RaceOfPage race_of_page(const RaceResults& results);
 
-/// Returns the settings whose configs are written: the settings on the front, or the winner. In place of a winner that is
-/// worse on the fresh seeds (95 % interval of the gain below 0), returns the config as it stands.
+/// Returns the settings whose configs are written: the settings on the front, or the winner. In place of a winner that
+/// is worse on the fresh seeds (95 % interval of the gain below 0), returns the config as it stands.
 std::vector<std::size_t> best_settings(const RaceResults& results);
 
 /// Returns the config of a setting as YAML, with the course of the race as a comment.

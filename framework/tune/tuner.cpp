@@ -25,6 +25,7 @@ namespace {
 
 // Fields of a round's line in manifest.jsonl.
 constexpr const char* kStage = "stage";
+constexpr const char* kBudget = "budget";
 constexpr const char* kStageEnd = "stage_end";
 constexpr const char* kSeeds = "seeds";
 constexpr const char* kRacing = "racing";
@@ -34,12 +35,14 @@ constexpr const char* kEnd = "end";
 constexpr const char* kFront = "front";
 
 constexpr std::size_t kLeastBudget = 60;  ///< of a search: six settings on four seeds, and the stages after them
+constexpr std::size_t kMostBudget = std::size_t{1} << 40;
 constexpr std::size_t kDrawsPerSetting = 20;
 
 Row round_row(const RaceDecision& decision, std::optional<double> seconds) {
   Row row;
   const RaceState& state = decision.state;
   row.add(kStage, static_cast<std::int64_t>(state.stage));
+  row.add(kBudget, static_cast<std::int64_t>(state.budget));
   row.add(kStageEnd, static_cast<std::int64_t>(state.stage_end));
   row.add(kSeeds, static_cast<std::int64_t>(state.seeds));
   row.add(kRacing, JsonList{fmt::format("[{}]", fmt::join(state.racing, ", "))});
@@ -245,8 +248,9 @@ RaceRecord read_race(const Sweep& sweep, const TuneDescription& description) {
   }
   const Row& last = sweep.rounds.back().decision;
   const std::size_t all = out.settings.size();
-  out.state = {whole(last, kStage, kLastStage + 1, sweep), whole(last, kStageEnd, std::size_t{1} << 40, sweep),
-               whole(last, kSeeds, sweep.jobs.size() + 1, sweep), numbers_in(last, kRacing, all, sweep)};
+  out.state = {whole(last, kStage, kLastStage + 1, sweep), whole(last, kBudget, kMostBudget, sweep),
+               whole(last, kStageEnd, kMostBudget, sweep), whole(last, kSeeds, sweep.jobs.size() + 1, sweep),
+               numbers_in(last, kRacing, all, sweep)};
   out.seconds = last.number(kSeconds).value_or(0.0);
   out.end = last.text(kEnd);
   if (!out.has_ended()) return out;
@@ -309,6 +313,7 @@ SweepPlan plan_first_round(const TunePlanner& planner, std::size_t budget, const
                             plan.sweep.jobs.size() / kFirstSeeds, kFirstSeeds),
                 fmt::format("give at least {}, or fewer values", plan.sweep.jobs.size()));
   RaceDecision decision;
+  decision.state.budget = budget;
   decision.state.stage_end = first_stage_end({is_search, 0.0}, budget);
   for (std::size_t i = 0; i < plan.sweep.jobs.size() / kFirstSeeds; ++i) decision.state.racing.push_back(i);
   plan.sweep.rounds.push_back({plan.sweep.jobs.size(), round_row(decision, std::nullopt)});

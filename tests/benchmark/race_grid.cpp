@@ -32,7 +32,7 @@ RaceOutcome race(const RaceTable& grid, const std::vector<std::size_t>& order) {
   const RaceRules rules{false, 0.0};
   RaceTable results(grid.size());
   RaceState state;
-  state.stage_end = grid.size() * order.size();
+  state.budget = state.stage_end = grid.size() * order.size();
   RaceOutcome out;
   for (std::size_t i = 0; i < grid.size(); ++i) state.racing.push_back(i);
   for (;;) {

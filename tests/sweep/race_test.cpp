@@ -54,6 +54,7 @@ RaceEnd run_race(const RaceRules& rules, std::size_t settings, std::size_t budge
                  const std::function<void(const RaceDecision&)>& check = nullptr) {
   RaceTable results(settings);
   RaceState state;
+  state.budget = budget;
   state.stage_end = first_stage_end(rules, budget);
   for (std::size_t i = 0; i < settings; ++i) state.racing.push_back(i);
   RaceEnd out;
@@ -183,6 +184,7 @@ TEST(Race, OfTwoMetricsKeepsSettingsFromBothEndsOfTheFront) {
   RaceTable costs(40);
   RaceState state;
   const RaceRules rules{true, 0.0};
+  state.budget = 500;
   state.stage_end = first_stage_end(rules, 500);
   for (std::size_t i = 0; i < 40; ++i) state.racing.push_back(i);
   std::size_t jobs = 0;
@@ -269,6 +271,15 @@ TEST(Race, OfASearchMovesToBetterSettings) {
         }
       });
   EXPECT_LT(quality[end.winner], first - 2.0);
+}
+
+TEST(Race, MovesTheEndOfAStageWithABudgetInTime) {
+  const RaceTable results = drawn({0.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7}, 40, 3.0, 6);
+  RaceState state{0, 400, 200, 4, {0, 1, 2, 3, 4, 5, 6, 7}};
+  const RaceDecision more = decide({true, 0.0}, state, results, nullptr, 800, 32);
+  EXPECT_EQ(more.state.stage_end, 400U);
+  const RaceDecision less = decide({true, 0.0}, state, results, nullptr, 100, 52);
+  EXPECT_GT(less.state.stage, 0U) << "the first stage had to end at 50 of 100 jobs";
 }
 
 TEST(Race, EndsAtOnceIfNoKeyHasAnEffect) {
