@@ -38,19 +38,6 @@ struct GroupOutcomes {
   int never = 0;  ///< number of counted jobs that never reached the checkpoint Comparison::occasion
 };
 
-bool contains(const Values& names, const std::string& name) {
-  return std::find(names.begin(), names.end(), name) != names.end();
-}
-
-/// Returns `names` except those in `without`.
-Values others(const Values& names, const Values& without) {
-  Values out;
-  for (const std::string& name : names) {
-    if (!contains(without, name)) out.push_back(name);
-  }
-  return out;
-}
-
 /// Sorts the groups by their values of the first key, then of the second, and so on. Values are in the order of the
 /// sweep.
 std::vector<JobGroup> by_keys(std::vector<JobGroup> groups) {
@@ -192,7 +179,7 @@ struct GroupsWithBaseline {
 std::vector<bool> scene_places(const Sweep& sweep, const Values& by) {
   const Values scenes = scene_keys(sweep);
   std::vector<bool> out;
-  for (const std::string& key : by) out.push_back(contains(scenes, key));
+  for (const std::string& key : by) out.push_back(is_one_of(scenes, key));
   if (std::all_of(out.begin(), out.end(), [](bool one) { return one; })) out.assign(by.size(), false);
   return out;
 }
@@ -242,7 +229,7 @@ void choose_baselines(std::vector<GroupsWithBaseline>& blocks, const std::vector
       throw Error("command line", fmt::format("--baseline: --where excludes all jobs of '{}'", name),
                   "name another group");
     names.push_back(one.name);
-    if (const std::string rest = values_at(one.values, scenes, false); !contains(names, rest)) names.push_back(rest);
+    if (const std::string rest = values_at(one.values, scenes, false); !is_one_of(names, rest)) names.push_back(rest);
   }
   throw Error("command line", fmt::format("--baseline: there is no group '{}'", name), suggestion(name, names));
 }
