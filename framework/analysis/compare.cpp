@@ -146,6 +146,7 @@ ComparedPair compare_pair(const std::vector<GroupOutcomes>& groups, std::size_t 
     if (a.count(pairing) == 0) add({{ValueStatus::without_partner}, ""}, outcome);
   }
   out.difference = mean_of_sample(differences.clusters(), largest);
+  out.spread = spread_of_units(differences.clusters(), largest);
   if (ratio) out.ratio = bootstrap_ratio(sums_of(of_a.clusters()), sums_of(of_b.clusters()));
   out.test = signed_rank_test(cluster_means(of_a.clusters()), cluster_means(of_b.clusters()));
   return out;

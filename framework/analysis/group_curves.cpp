@@ -63,8 +63,7 @@ MeanEstimate estimate_at(const std::vector<JobCurve>& jobs, double at, bool stud
   for (const JobCurve& job : jobs) {
     if (const double value = job.value(at); std::isfinite(value)) units.add(job.unit, value);
   }
-  if (!students) return mean_of_sample(units.clusters());
-  MeanEstimate out = estimate_mean(units.clusters());
+  MeanEstimate out = students ? estimate_mean(units.clusters()) : mean_of_sample(units.clusters());
   if (out.clusters < kLeastForInterval) out.interval.reset();
   return out;
 }
