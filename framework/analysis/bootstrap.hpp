@@ -21,7 +21,7 @@ inline constexpr std::size_t kLeastForInterval = 5;
 
 /// Least number of clusters for a bootstrap interval. From 20 clusters on, the bootstrap interval has the same coverage
 /// as Student's t, and its shape follows the skewness of the values. With 5 to 10 clusters it contains the mean too
-/// rarely (table in docs/comparing.md).
+/// rarely (table in docs/numerics.md).
 inline constexpr std::size_t kLeastForBootstrap = 20;
 
 /// Returns the mean of finite values with a 95 % interval: Student's t below kLeastForBootstrap clusters, else

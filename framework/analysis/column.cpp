@@ -9,7 +9,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
 #include <charconv>
 #include <cmath>
 
@@ -31,11 +30,8 @@ std::string Column::better_words() const {
 
 Column find_column(const std::string& name, const std::vector<std::string>& columns, const std::string& option) {
   const std::string of_run = field_name(name);
-  const auto is_there = [&](const std::string& one) {
-    return std::find(columns.begin(), columns.end(), one) != columns.end();
-  };
   const RecordField* field = find_summary_field(of_run);
-  if (!is_there(name) && !(field != nullptr && is_there(of_run))) {
+  if (!is_one_of(columns, name) && !(field != nullptr && is_one_of(columns, of_run))) {
     throw Error("command line", fmt::format("{}: results.csv has no column '{}'", option, name),
                 suggestion(name, columns));
   }

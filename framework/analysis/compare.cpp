@@ -38,19 +38,6 @@ struct GroupOutcomes {
   int never = 0;  ///< number of counted jobs that never reached the checkpoint Comparison::occasion
 };
 
-bool contains(const Values& names, const std::string& name) {
-  return std::find(names.begin(), names.end(), name) != names.end();
-}
-
-/// Returns `names` except those in `without`.
-Values others(const Values& names, const Values& without) {
-  Values out;
-  for (const std::string& name : names) {
-    if (!contains(without, name)) out.push_back(name);
-  }
-  return out;
-}
-
 /// Sorts the groups by their values of the first key, then of the second, and so on. Values are in the order of the
 /// sweep.
 std::vector<JobGroup> by_keys(std::vector<JobGroup> groups) {
@@ -159,6 +146,7 @@ ComparedPair compare_pair(const std::vector<GroupOutcomes>& groups, std::size_t 
     if (a.count(pairing) == 0) add({{ValueStatus::without_partner}, ""}, outcome);
   }
   out.difference = mean_of_sample(differences.clusters(), largest);
+  out.spread = spread_of_units(differences.clusters(), largest);
   if (ratio) out.ratio = bootstrap_ratio(sums_of(of_a.clusters()), sums_of(of_b.clusters()));
   out.test = signed_rank_test(cluster_means(of_a.clusters()), cluster_means(of_b.clusters()));
   return out;
@@ -192,7 +180,7 @@ struct GroupsWithBaseline {
 std::vector<bool> scene_places(const Sweep& sweep, const Values& by) {
   const Values scenes = scene_keys(sweep);
   std::vector<bool> out;
-  for (const std::string& key : by) out.push_back(contains(scenes, key));
+  for (const std::string& key : by) out.push_back(is_one_of(scenes, key));
   if (std::all_of(out.begin(), out.end(), [](bool one) { return one; })) out.assign(by.size(), false);
   return out;
 }
@@ -242,7 +230,7 @@ void choose_baselines(std::vector<GroupsWithBaseline>& blocks, const std::vector
       throw Error("command line", fmt::format("--baseline: --where excludes all jobs of '{}'", name),
                   "name another group");
     names.push_back(one.name);
-    if (const std::string rest = values_at(one.values, scenes, false); !contains(names, rest)) names.push_back(rest);
+    if (const std::string rest = values_at(one.values, scenes, false); !is_one_of(names, rest)) names.push_back(rest);
   }
   throw Error("command line", fmt::format("--baseline: there is no group '{}'", name), suggestion(name, names));
 }

@@ -58,6 +58,8 @@ struct ComparedPair {
   StatusCounts lost;
   /// mean difference; `count` is the number of pairs, and clusters are pairs with equal units (StatisticalUnits)
   MeanEstimate difference;
+  /// spread of the differences per unit; nullopt for fewer than two units and for equal differences
+  std::optional<UnitSpread> spread;
   /// Mean of the first group divided by the mean of the second group; nullopt if the ratio was not requested or is not
   /// defined.
   std::optional<RatioEstimate> ratio;

@@ -5,6 +5,8 @@
 #include "analysis/mean_output.hpp"
 #include "analysis/table.hpp"
 
+#include <palpate/error.hpp>
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -181,6 +183,10 @@ Table pair_table(const Comparison& comparison, const DisplayScale& scale, const 
                                            [&](double value) { return scale.difference(value); });
     table.show("mean [95 % interval]", pair.difference.count > 0 ? mean : "-");
     store_estimate(table, comparison, pair.difference);
+    std::optional<double> detectable;
+    if (pair.spread) detectable = planning_sd(*pair.spread, 0.8) * detectable_effect(pair.difference.clusters, 0.8);
+    table.show("detectable", scale.number(detectable));
+    table.store("detectable", detectable);
     if (comparison.ratios) {
       table.show("ratio [95 % interval]", ratio_text(pair));
       store_ratio(table, pair.ratio);
@@ -310,6 +316,28 @@ std::string compare_tables(const Comparison& comparison) {
   return out + (notes.empty() ? "" : "\n" + notes);
 }
 
+std::string power_table(const Comparison& comparison, double difference, double power) {
+  const DisplayScale scale = difference_scale(comparison, readable_scale(comparison.metric.unit, comparison.means()));
+  const auto needed = [&](double sd) { return units_needed(difference / sd, power); };
+  Table table;
+  if (comparison.pairs.empty()) throw Error("command line", "--by: there is only one group", "name another key");
+  for (const ComparedPair& pair : comparison.pairs) {
+    const std::string name = comparison.groups[pair.first].name + " - " + comparison.groups[pair.second].name;
+    if (pair.difference.clusters < 3) throw Error(name, "fewer than 3 common seeds", "run more; see 'palpate compare'");
+    if (!pair.spread) throw Error(name, "the sd is 0, as all differences are equal", "choose another metric or group");
+    const UnitSpread& spread = *pair.spread;
+    table.add_row();
+    table.show("difference", name, Kind::text);
+    table.show("pilot seeds", std::to_string(pair.difference.clusters));
+    table.show("sd [95 % interval]", scale.estimate(MeanEstimate{1, 1, spread.sd, spread.interval}));
+    table.show("seeds needed [95 % interval]", fmt::format("{} [{}, {}]", needed(planning_sd(spread, power)),
+                                                           needed(spread.interval.low), needed(spread.interval.high)));
+  }
+  return fmt::format("{} by {}: seeds for a difference of {} with {} % power\n{}", scale.title(comparison.metric.name),
+                     keys_text(comparison.by), readable(difference, comparison.metric.unit, 6),
+                     significant(100.0 * power), table.text());
+}
+
 std::string compare_legend(const std::vector<Comparison>& comparisons) {
   bool holm = false;
   bool paired = false;
@@ -337,10 +365,11 @@ std::string compare_legend(const std::vector<Comparison>& comparisons) {
         first.by_seed ? "seeds" : "pairs");
   }
   out += fmt::format(
-      "p: two-sided Wilcoxon signed-rank test of the differences{}. Equal {} are dropped.\nIt is exact up to {} "
+      "detectable: true difference that a two-sided paired t test finds at 5 % with 80 % power, with this number of "
+      "{}.\np: two-sided Wilcoxon signed-rank test of the differences{}. Equal {} are dropped.\nIt is exact up to {} "
       "differences and uses the normal approximation for more.\n{}effect: matched-pairs rank-biserial correlation, "
       "from -1 (the first is always lower) to +1 (always higher).\n",
-      first.by_seed ? " of the means per seed" : "", first.by_seed ? "seeds" : "pairs", kExactSignedRanks,
+      units, first.by_seed ? " of the means per seed" : "", first.by_seed ? "seeds" : "pairs", kExactSignedRanks,
       holm ? "p (Holm): adjusted for all tests of the table.\n" : "");
   return out;
 }

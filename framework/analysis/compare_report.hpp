@@ -16,6 +16,10 @@ std::string compare_tables(const Comparison& comparison);
 /// Returns an explanation of intervals, p and effects, which is printed below the tables.
 std::string compare_legend(const std::vector<Comparison>& comparisons);
 
+/// Returns a table of the seeds that each pair needs for a true difference of `difference` (SI units) with this power,
+/// and an explanation. Throws Error if the seed is not swept, and if no pair has a spread.
+std::string power_table(const Comparison& comparison, double difference, double power);
+
 /// Returns a table of means in Markdown, for a paper or a README. It has one row per group and number of taps, and one
 /// column per metric with its unit. Remarks on missing values follow the table. All comparisons must have the same
 /// groups. Comparisons at the same checkpoint (Comparison::occasion) must be adjacent, and each checkpoint must have

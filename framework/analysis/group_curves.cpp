@@ -63,8 +63,7 @@ MeanEstimate estimate_at(const std::vector<JobCurve>& jobs, double at, bool stud
   for (const JobCurve& job : jobs) {
     if (const double value = job.value(at); std::isfinite(value)) units.add(job.unit, value);
   }
-  if (!students) return mean_of_sample(units.clusters());
-  MeanEstimate out = estimate_mean(units.clusters());
+  MeanEstimate out = students ? estimate_mean(units.clusters()) : mean_of_sample(units.clusters());
   if (out.clusters < kLeastForInterval) out.interval.reset();
   return out;
 }
@@ -168,13 +167,7 @@ std::vector<std::string> GroupCurves::scene_names() const {
 }
 
 std::vector<std::string> curve_keys(const Sweep& sweep) {
-  const std::vector<std::string> scenes = scene_keys(sweep);
-  std::vector<std::string> out = varying_keys(sweep, setting_keys(sweep));
-  const auto is_scene = [&](const std::string& key) {
-    return std::find(scenes.begin(), scenes.end(), key) != scenes.end();
-  };
-  out.erase(std::remove_if(out.begin(), out.end(), is_scene), out.end());
-  return out;
+  return others(varying_keys(sweep, setting_keys(sweep)), scene_keys(sweep));
 }
 
 GroupCurves make_group_curves(const Sweep& sweep, const std::vector<Row>& results, const std::vector<TapValues>& values,

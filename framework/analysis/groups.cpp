@@ -14,13 +14,13 @@
 #include <optional>
 
 namespace palpate {
-namespace {
-
-bool is_among(const std::vector<std::string>& names, const std::string& name) {
-  return std::find(names.begin(), names.end(), name) != names.end();
+std::vector<std::string> others(const std::vector<std::string>& names, const std::vector<std::string>& without) {
+  std::vector<std::string> out;
+  for (const std::string& name : names) {
+    if (!is_one_of(without, name)) out.push_back(name);
+  }
+  return out;
 }
-
-}  // namespace
 
 std::string value_of(const Sweep& sweep, const Job& job, const std::string& key) {
   const auto at = std::find(sweep.keys.begin(), sweep.keys.end(), key);
@@ -59,11 +59,7 @@ std::vector<double> values_of(const JobGroup& group, const std::string& column, 
   return out;
 }
 
-std::vector<std::string> setting_keys(const Sweep& sweep) {
-  std::vector<std::string> out = sweep.keys;
-  out.erase(std::remove(out.begin(), out.end(), "seed"), out.end());
-  return out;
-}
+std::vector<std::string> setting_keys(const Sweep& sweep) { return others(sweep.keys, {"seed"}); }
 
 std::vector<std::string> varying_keys(const Sweep& sweep, const std::vector<std::string>& keys) {
   std::vector<std::string> out;
@@ -85,11 +81,11 @@ std::vector<std::string> scene_keys(const Sweep& sweep) {
 void check_group_keys(const Sweep& sweep, const std::vector<std::string>& keys) {
   for (auto key = keys.begin(); key != keys.end(); ++key) {
     if (*key == "seed") {
-      const std::vector<std::string> others = setting_keys(sweep);
+      const std::vector<std::string> settings = setting_keys(sweep);
       throw Error("command line", "--by: the seed repeats a job and cannot form groups",
-                  others.empty() ? "sweep the key whose values you want to compare" : suggestion(*key, others));
+                  settings.empty() ? "sweep the key whose values you want to compare" : suggestion(*key, settings));
     }
-    if (!is_among(sweep.keys, *key)) {
+    if (!is_one_of(sweep.keys, *key)) {
       throw Error("command line", fmt::format("--by: this sweep does not vary '{}'", *key),
                   suggestion(*key, setting_keys(sweep)));
     }
@@ -100,7 +96,7 @@ void check_group_keys(const Sweep& sweep, const std::vector<std::string>& keys) 
 }
 
 Column find_metric(const Sweep& sweep, const std::string& name, const std::vector<std::string>& columns) {
-  if (is_among(sweep.keys, name) && (name == "seed" || find_summary_field(name) == nullptr)) {
+  if (is_one_of(sweep.keys, name) && (name == "seed" || find_summary_field(name) == nullptr)) {
     throw Error("command line", fmt::format("--metric: '{}' is a swept key, not a result", name),
                 name == "seed" ? "name a field of the summary" : "use it with --by");
   }
@@ -110,15 +106,15 @@ Column find_metric(const Sweep& sweep, const std::string& name, const std::vecto
 JobCondition::JobCondition(const Sweep& sweep, const std::vector<std::string>& columns, const WhereCondition* where)
     : sweep_(sweep), columns_(columns), where_(where), names_(columns) {
   std::copy_if(sweep.keys.begin(), sweep.keys.end(), std::back_inserter(names_),
-               [&](const std::string& key) { return !is_among(columns, key); });
+               [&](const std::string& key) { return !is_one_of(columns, key); });
 }
 
 bool JobCondition::keeps(const JobResult& job) const {
   if (where_ == nullptr) return true;
   const WhereCondition::Values value_in_job = [&](const std::string& name) -> std::optional<WhereCondition::Value> {
-    if (is_among(sweep_.keys, name)) return WhereCondition::Value{value_of(sweep_, *job.job, name)};
+    if (is_one_of(sweep_.keys, name)) return WhereCondition::Value{value_of(sweep_, *job.job, name)};
     const std::string field = field_name(name);
-    if (!is_among(columns_, name) && (field == name || !is_among(columns_, field))) return std::nullopt;
+    if (!is_one_of(columns_, name) && (field == name || !is_one_of(columns_, field))) return std::nullopt;
     const Scalar* value = job.row != nullptr ? result_of(*job.row, name) : nullptr;
     return WhereCondition::Value{value != nullptr ? written_in(field, *value) : std::string(), true};
   };
@@ -129,7 +125,7 @@ StatisticalUnits::StatisticalUnits(const Sweep& sweep, const std::vector<Row>& r
     : sweep_(sweep), are_seeds_(!varying_keys(sweep, {"seed"}).empty()) {
   if (are_seeds_) return;
   for (const std::string& name : names_of(results)) {
-    if (!is_among(sweep.keys, name) && name != "job" && name != "id" && !depends_on_machine(name))
+    if (!is_one_of(sweep.keys, name) && name != "job" && name != "id" && !depends_on_machine(name))
       compared_.insert(name);
   }
 }

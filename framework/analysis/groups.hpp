@@ -42,6 +42,9 @@ std::vector<JobGroup> group_jobs(const Sweep& sweep, const std::vector<Row>& res
 /// value_of_job().
 std::vector<double> values_of(const JobGroup& group, const std::string& column, const std::string& option);
 
+/// Returns `names` except those in `without`.
+std::vector<std::string> others(const std::vector<std::string>& names, const std::vector<std::string>& without);
+
 /// Returns the swept keys that define a setting: all except the seed.
 std::vector<std::string> setting_keys(const Sweep& sweep);
 

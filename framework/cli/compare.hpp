@@ -6,12 +6,29 @@
 
 namespace palpate::cli {
 
-struct CompareArguments {
+/// The jobs, groups and columns that `palpate compare` and `palpate power` take.
+struct ComparedArguments {
   std::vector<std::string> records;  ///< sweeps and runs, as find_records() takes them; they are pooled into one sweep
   std::vector<std::string> by;
   std::vector<std::string> metrics;
   std::optional<std::string> where;
   std::optional<std::string> baseline;
+};
+
+inline void add_compared(const Command& command, ComparedArguments& query) {
+  command.pooled_records(query.records);
+  command.argument("--by", query.by, "KEYS", "swept keys that define the groups, for example acquisition,kernel",
+                   {comma_separated(), required()});
+  command.argument("--metric", query.metrics, "COLUMNS",
+                   "columns of results.csv to compare, for example object_taps,footprint_iou",
+                   {comma_separated(), required()});
+  command.argument("--where", query.where, "CONDITION",
+                   "compare only jobs that satisfy this condition, for example \"first_hit_tap <= 3\"");
+  command.argument("--baseline", query.baseline, "GROUP",
+                   "group with which every other group is compared, for example uncertainty");
+}
+
+struct CompareArguments : ComparedArguments {
   /// numbers of taps at which jobs are compared; if empty, jobs are compared at their ends
   std::vector<int> at;
   std::optional<std::string> until;  ///< COLUMN=VALUE: jobs are compared after the first tap that reached this value
@@ -27,16 +44,7 @@ inline void add_compare(CommandLine& line) {
       [](NeededParts& needs, const CompareArguments& arguments) {
         arguments.at.empty() && !arguments.until ? needs.whole() : needs.everything();
       });
-  command.pooled_records(query.records);
-  command.argument("--by", query.by, "KEYS", "swept keys that define the groups, for example acquisition,kernel",
-                   {comma_separated(), required()});
-  command.argument("--metric", query.metrics, "COLUMNS",
-                   "columns of results.csv to compare, for example object_taps,footprint_iou",
-                   {comma_separated(), required()});
-  command.argument("--where", query.where, "CONDITION",
-                   "compare only jobs that satisfy this condition, for example \"first_hit_tap <= 3\"");
-  command.argument("--baseline", query.baseline, "GROUP",
-                   "group with which every other group is compared, for example uncertainty");
+  add_compared(command, query);
   const Argument at = command.argument("--at", query.at, "NUMBERS",
                                        "numbers of taps after which the jobs are compared, for example 17,30",
                                        {comma_separated(), at_least(1)});

@@ -123,6 +123,9 @@ void for_all(AnyTree& tree, const Visit& visit) {
 bool is_name(const std::string& text);
 inline constexpr const char* kNameHint = "a name has letters, digits, '_' and '-', and no path";
 
+/// Returns whether `names` contains `name`.
+bool is_one_of(const std::vector<std::string>& names, const std::string& name);
+
 /// Returns the known name that is most similar to `name`; "" if none is similar.
 std::string nearest(std::string_view name, const std::vector<std::string>& known);
 

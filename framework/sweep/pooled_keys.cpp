@@ -13,16 +13,12 @@ namespace {
 
 using PoolTexts = std::vector<std::string>;
 
-bool contains(const PoolTexts& names, const std::string& name) {
-  return std::find(names.begin(), names.end(), name) != names.end();
-}
-
 /// Returns whether one of `keys` decides the option at `path`. A key decides the path if it lies above the path, if the
 /// path inherits from it, or if it is a strategy. A key with the same parent as the path also decides it if some config
 /// lacks the option.
 bool is_decided(const std::string& path, const PoolTexts& keys, const std::vector<Row>& configs) {
   return std::any_of(keys.begin(), keys.end(), [&](const std::string& key) {
-    if (is_at_or_below(path, key) || contains(config_keys().heirs_of(key), path)) return true;
+    if (is_at_or_below(path, key) || is_one_of(config_keys().heirs_of(key), path)) return true;
     if (key == kStrategy) return config_keys().is_of_strategy(path);
     const auto dot = path.rfind('.');
     const bool beside = dot != std::string::npos && key.rfind('.') == dot && key.compare(0, dot, path, 0, dot) == 0;
@@ -38,7 +34,7 @@ std::string enclosing_choice(const std::string& path, const PoolTexts& differing
   for (auto dot = path.find('.'); dot != std::string::npos; dot = path.find('.', dot + 1)) {
     std::string part = path.substr(0, dot);
     if (config_keys().is_group(part) || config_keys().is_typed(part)) group = part;
-    if (group == part && contains(differing, part + ".type")) return part;
+    if (group == part && is_one_of(differing, part + ".type")) return part;
     if (std::isdigit(static_cast<unsigned char>(path[dot + 1])) != 0) return group.empty() ? part : group;
   }
   return path;

@@ -32,10 +32,6 @@ constexpr const char* kName = "name";
 constexpr const char* kSeed = "seed";
 constexpr const char* kScene = "scene";
 
-bool is_one_of(const PoolTexts& names, const std::string& name) {
-  return std::find(names.begin(), names.end(), name) != names.end();
-}
-
 bool is_scene(const std::string& key) { return is_at_or_below(key, kScene); }
 
 /// A record to combine: a sweep, or a run as a sweep of one job without keys.

@@ -275,18 +275,21 @@ TEST(CompareTables, SayBetterOnlyWhereItIsKnown) {
 }
 
 TEST(CompareTables, AreTheseLetterByLetter) {
+  // 1.60: in R, s <- sd(0:5) / 2; s * qt(0.8, 5, 1.96) / (1.96 + qnorm(0.8)) * power.t.test(n = 6, power = 0.8, sd = 1,
+  // type = "paired")$delta
   const std::string tables = compare_tables(MadeSweep(two_by_two(6)).by({"acquisition"}));
-  EXPECT_EQ(tables,
-            "rmse_m [mm] by acquisition; less is better\n"
-            "acquisition  jobs   n  seeds  mean [95 % interval]  median  10 % to 90 %\n"
-            "a              12  12      6        117 [100, 134]     115    100 to 139\n"
-            "b              12  12      6        268 [251, 285]     271    206 to 329\n"
-            "\n"
-            "difference  pairs  lost  seeds        mean [95 % interval]  better/equal/worse      p  effect\n"
-            "b - a          12     0      6  +151.25 [+150.27, +152.23]               0/0/6  0.031   +1.00\n"
-            "\n"
-            "only 6 seeds: an interval over so few (Student's t) can miss the true mean in more than 5 of 100 cases; "
-            "run 10 or more\n");
+  EXPECT_EQ(
+      tables,
+      "rmse_m [mm] by acquisition; less is better\n"
+      "acquisition  jobs   n  seeds  mean [95 % interval]  median  10 % to 90 %\n"
+      "a              12  12      6        117 [100, 134]     115    100 to 139\n"
+      "b              12  12      6        268 [251, 285]     271    206 to 329\n"
+      "\n"
+      "difference  pairs  lost  seeds        mean [95 % interval]  detectable  better/equal/worse      p  effect\n"
+      "b - a          12     0      6  +151.25 [+150.27, +152.23]        1.60               0/0/6  0.031   +1.00\n"
+      "\n"
+      "only 6 seeds: an interval over so few (Student's t) can miss the true mean in more than 5 of 100 cases; "
+      "run 10 or more\n");
 }
 
 TEST(CompareTables, NoteWhereTheMeanAndMostPairsDisagree) {
