@@ -105,8 +105,7 @@ Column find_metric(const Sweep& sweep, const std::string& name, const std::vecto
 
 JobCondition::JobCondition(const Sweep& sweep, const std::vector<std::string>& columns, const WhereCondition* where)
     : sweep_(sweep), columns_(columns), where_(where), names_(columns) {
-  std::copy_if(sweep.keys.begin(), sweep.keys.end(), std::back_inserter(names_),
-               [&](const std::string& key) { return !is_one_of(columns, key); });
+  for (const std::string& key : others(sweep.keys, columns)) names_.push_back(key);
 }
 
 bool JobCondition::keeps(const JobResult& job) const {

@@ -4,9 +4,11 @@
 #include "support/clusters.hpp"
 #include "support/made_sweep.hpp"
 
-#include <array>
+#include <fmt/format.h>
+
 #include <functional>
 #include <random>
+#include <tuple>
 
 namespace palpate {
 namespace {
@@ -174,8 +176,8 @@ TEST(PlanFromAPilot, HasSeventyToNinetyPercentTruePowerForSkewedDifferences) {
       EXPECT_GT(results.power, 0.7) << effect;
       EXPECT_LT(results.power, 0.9) << effect;
       EXPECT_GT(results.coverage, 0.78) << effect << ": with 19 degrees of freedom it would be 0.72";
-      const std::string name = draw == skewed_up ? "gain" : "loss";
-      EXPECT_THAT(numerics_page(), HasSubstr("a large " + name + " | " + row_of(effect, results)));
+      const std::string name = draw == skewed_up ? "upwards" : "downwards";
+      EXPECT_THAT(numerics_page(), HasSubstr("exponential, long tail " + name + " | " + row_of(effect, results)));
     }
   }
 }

@@ -128,7 +128,7 @@ TEST_F(CommandLine, WrongUsageIsOneLineWithStatus2) {
 
 TEST_F(CommandLine, ACommandThatThereIsNotIsToldTheNearest) {
   EXPECT_EQ(refused({"runn", paper()}), "no command 'runn', did you mean 'run'?\n");
-  EXPECT_THAT(refused("frobnicate"), StartsWith("no command 'frobnicate', known: run, sweep, resume, "));
+  EXPECT_THAT(refused("frobnicate"), StartsWith("no command 'frobnicate', known: run, sweep, tune, resume, "));
 }
 
 TEST_F(CommandLine, SeveralDirectoriesWhereACommandTakesOneAreOneLineWithARemedy) {
