@@ -2,6 +2,7 @@
 #include "cli/compare.hpp"
 
 #include "analysis/compare_report.hpp"
+#include "analysis/importance.hpp"
 #include "cli/display.hpp"
 #include "cli/output.hpp"
 #include "cli/sweep_display.hpp"
@@ -59,14 +60,9 @@ CompareExtent extent_of(const CompareArguments& arguments) {
   return arguments.format == "latex" ? CompareExtent::intervals : CompareExtent::means;
 }
 
-/// Returns the rows of all comparisons as CSV, or as a JSON list with one object per line.
-std::string rows_text(const std::vector<Comparison>& comparisons, const CompareArguments& arguments) {
-  std::vector<Row> rows;
-  for (const Comparison& one : comparisons) {
-    std::vector<Row> more = compare_rows(one, arguments.where.value_or(""));
-    std::move(more.begin(), more.end(), std::back_inserter(rows));
-  }
-  if (arguments.format == "csv") return to_csv(rows);
+/// Returns rows as CSV, or as a JSON list with one object per line.
+std::string rows_text(const std::vector<Row>& rows, const std::string& format) {
+  if (format == "csv") return to_csv(rows);
   std::string out = "[";
   for (const Row& row : rows) out += (&row == &rows.front() ? "\n" : ",\n") + to_json_line(row);
   return out + "\n]\n";
@@ -109,15 +105,38 @@ std::optional<std::vector<Comparison>> compare_all(const CommandEnvironment& pro
   return comparisons;
 }
 
+/// Prints the importance of the swept keys for each metric.
+int print_importance(const Sweep& sweep, const CompareArguments& arguments) {
+  const std::optional<WhereCondition> where = WhereCondition::of_command_line(arguments.where);
+  std::vector<Row> rows;
+  for (const std::string& metric : arguments.metrics) {
+    const Importance made = compute_importance(sweep, sweep_results(sweep), metric, where ? &*where : nullptr);
+    rows.insert(rows.end(), made.table.rows().begin(), made.table.rows().end());
+    if (arguments.format == "text") print_text(made.text + "\n");
+    if (arguments.format == "markdown") print_text(made.table.markdown());
+    if (arguments.format == "latex") print_text(made.table.latex());
+  }
+  if (arguments.format == "csv" || arguments.format == "json") print_data(rows_text(rows, arguments.format));
+  return kDone;
+}
+
 }  // namespace
 
 int compare(CommandEnvironment& program, const CompareArguments& arguments) {
   extent_of(arguments);
+  if (arguments.by.empty() && !arguments.importance)
+    throw Error("", "--by or --importance is required", "see palpate compare --help");
   const Sweep sweep = read_records(arguments.records, arguments.by);
+  if (arguments.importance) return print_importance(sweep, arguments);
   const auto comparisons = compare_all(program, sweep, arguments);
   if (!comparisons) return kInterrupted;
   if (arguments.format == "csv" || arguments.format == "json") {
-    print_data(rows_text(*comparisons, arguments));
+    std::vector<Row> rows;
+    for (const Comparison& one : *comparisons) {
+      std::vector<Row> more = compare_rows(one, arguments.where.value_or(""));
+      std::move(more.begin(), more.end(), std::back_inserter(rows));
+    }
+    print_data(rows_text(rows, arguments.format));
     return kDone;
   }
   if (arguments.format != "text") {

@@ -4,6 +4,8 @@
 
 #include "cli/command_line.hpp"
 
+#include <utility>
+
 namespace palpate::cli {
 
 /// The jobs, groups and columns that `palpate compare` and `palpate power` take.
@@ -15,17 +17,19 @@ struct ComparedArguments {
   std::optional<std::string> baseline;
 };
 
-inline void add_compared(const Command& command, ComparedArguments& query) {
+/// Adds the arguments, and returns --by and --baseline. `by_rules`: rules of --by.
+inline std::pair<Argument, Argument> add_compared(const Command& command, ComparedArguments& query,
+                                                  Command::Rules by_rules) {
   command.pooled_records(query.records);
-  command.argument("--by", query.by, "KEYS", "swept keys that define the groups, for example acquisition,kernel",
-                   {comma_separated(), required()});
+  const Argument by = command.argument("--by", query.by, "KEYS",
+                                       "swept keys that define the groups, for example acquisition,kernel", by_rules);
   command.argument("--metric", query.metrics, "COLUMNS",
                    "columns of results.csv to compare, for example object_taps,footprint_iou",
                    {comma_separated(), required()});
   command.argument("--where", query.where, "CONDITION",
                    "compare only jobs that satisfy this condition, for example \"first_hit_tap <= 3\"");
-  command.argument("--baseline", query.baseline, "GROUP",
-                   "group with which every other group is compared, for example uncertainty");
+  return {by, command.argument("--baseline", query.baseline, "GROUP",
+                               "group with which every other group is compared, for example uncertainty")};
 }
 
 struct CompareArguments : ComparedArguments {
@@ -33,6 +37,7 @@ struct CompareArguments : ComparedArguments {
   std::vector<int> at;
   std::optional<std::string> until;  ///< COLUMN=VALUE: jobs are compared after the first tap that reached this value
   bool ratio = false;
+  bool importance = false;  ///< whether to print the importance of the swept keys instead of groups
   std::string format = "text";
   std::optional<int> workers;
 };
@@ -44,25 +49,33 @@ inline void add_compare(CommandLine& line) {
       [](NeededParts& needs, const CompareArguments& arguments) {
         arguments.at.empty() && !arguments.until ? needs.whole() : needs.everything();
       });
-  add_compared(command, query);
+  const auto [by, baseline] = add_compared(command, query, {comma_separated()});
   const Argument at = command.argument("--at", query.at, "NUMBERS",
                                        "numbers of taps after which the jobs are compared, for example 17,30",
                                        {comma_separated(), at_least(1)});
-  command.argument("--until", query.until, "COLUMN=VALUE",
-                   "value of a summary field, for example rmse_m=8mm. Each job is compared at the tap that reaches the "
-                   "value. A job that never reaches the value is compared at its end",
-                   {not_with(at)});
-  command.flag("--ratio", query.ratio, "also print the ratio of the means of each pair");
+  const Argument until = command.argument(
+      "--until", query.until, "COLUMN=VALUE",
+      "value of a summary field, for example rmse_m=8mm. Each job is compared at the tap that reaches the "
+      "value. A job that never reaches the value is compared at its end",
+      {not_with(at)});
+  const Argument ratio = command.flag("--ratio", query.ratio, "also print the ratio of the means of each pair");
+  const Argument importance =
+      command.flag("--importance", query.importance,
+                   "in place of --by: share of the variance between settings that each swept key and each pair of keys "
+                   "explains. A Gaussian process approximates the shares if not every combination of values has run",
+                   {not_with(by), not_with(baseline), not_with(at), not_with(until), not_with(ratio)});
   command.argument("--format", query.format, "NAME",
-                   "output format. text also writes CSV files next to results.csv. csv and json contain groups and "
-                   "pairs. latex is a booktabs table of means, intervals and n. markdown is a table of means",
+                   "output format. text also writes CSV files next to results.csv, except with --importance. csv and "
+                   "json contain groups and pairs, or shares. latex is a booktabs table of means, intervals and n. "
+                   "markdown is a table of means",
                    {one_of({"text", "markdown", "csv", "json", "latex"}), with_default()});
   command.argument("-j", query.workers, "N",
                    "number of jobs that --at or --until computes in parallel; default: number of cores",
-                   {between(1, kMaxWorkers)});
+                   {between(1, kMaxWorkers), not_with(importance)});
   command.examples(
       {"palpate compare runs/many/* --by acquisition --metric object_taps",
-       "palpate compare runs/many/* --by acquisition --metric rmse_m,footprint_iou --at 17,30 --format latex"});
+       "palpate compare runs/many/* --by acquisition --metric rmse_m,footprint_iou --at 17,30 --format latex",
+       "palpate compare runs/many/* --importance --metric rmse_m"});
 }
 
 }  // namespace palpate::cli

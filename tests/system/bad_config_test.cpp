@@ -73,7 +73,8 @@ std::vector<Case> cases() {
       line("TypoInANestedKey", "initial: {desing: grid}", "10:11: unknown option 'desing', did you mean 'design'?"),
       line("UnknownTopLevelKey", "colour: red",
            "10:1: unknown option 'colour', known: complete, name, seed, taps, initial, candidates, kernel, fitting, "
-           "acquisition, choice, belief, backend, motion, scene, stop, log, defaults, strategy, sweep, expect"),
+           "acquisition, choice, belief, backend, motion, scene, stop, log, defaults, strategy, sweep, "
+           "tune, expect"),
       line("DottedKeyInAFile", "belief.label.clip: yes",
            "10:1: unknown option 'belief.label.clip', write belief: {label: {clip: yes}}"),
       whole("DottedKeyWhereItsGroupIsNeeded", without("  - backend") + "backend.type: simulator\n",

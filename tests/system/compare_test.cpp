@@ -179,11 +179,43 @@ TEST_F(Compare, ReachesASweptKeyAndTheResultOfTheSameName) {
   EXPECT_EQ(kept("summary.taps > 0"), "0") << "what was made";
 }
 
+TEST_F(Compare, SplitsTheVarianceBetweenSettingsAmongTheSweptKeys) {
+  const fs::path directory = strategies();
+  const Ended text = compare(directory, "--importance --metric rmse_m,object_taps");
+  EXPECT_THAT(text.out, StartsWith("importance for rmse_m: share of the variance between 4 settings\nkeys "));
+  EXPECT_THAT(text.out, HasSubstr("\n\nimportance for object_taps: share of the variance between 4 settings\n"));
+  EXPECT_THAT(text.out, HasSubstr("\nexact: every combination of the values has run; 6 of 6 seeds used\nnoise: "));
+  const std::vector<Cells> rows = csv_rows(compare(directory, "--importance --metric rmse_m --format csv").out);
+  ASSERT_EQ(rows.size(), 3U);
+  EXPECT_EQ(rows.back().at("keys"), "acquisition,taps");
+  EXPECT_NEAR(std::stod(rows[0].at("share")) + std::stod(rows[1].at("share")) + std::stod(rows[2].at("share")), 1.0,
+              1e-12);
+  const std::string list = compare(directory, "--importance --metric rmse_m --format json").out;
+  const std::string object = "{\"rows\": " + list + "}";
+  const Tree tree = *parse_json(object, "stdout").find("rows");
+  ASSERT_EQ(tree.items.size(), 3U);
+  for (const char* name : {"metric", "keys", "share", "low_95", "high_95", "exact", "noise"})
+    EXPECT_EQ(tree.items[0].find(name)->text, rows[0].at(name)) << name;
+  EXPECT_THAT(compare(directory, "--importance --metric rmse_m --format markdown").out,
+              StartsWith("| keys | share in % [95 % interval] |\n|---|---:|\n"));
+  EXPECT_THAT(compare(directory, "--importance --metric rmse_m --format latex").out, HasSubstr("acquisition,taps & "));
+}
+
 TEST_F(Compare, RefusesInOneLineWhatCannotBeCompared) {
   const Words compare{"compare", strategies()};
   EXPECT_EQ(refused(compare + "--by acquisition --metric rmse_m,rsme_m"),
             "command line: --metric: results.csv has no column 'rsme_m', did you mean 'rmse_m'?\n");
   EXPECT_THAT(refused(compare + "--by acquisition"), StartsWith("--metric is required"));
+  EXPECT_EQ(refused(compare + "--metric rmse_m"), "--by or --importance is required, see palpate compare --help\n");
+  for (const char* other : {"--by acquisition", "--baseline weighted", "--at 3", "--until rmse_m=8mm", "--ratio"}) {
+    const std::string option = Words(other).front();
+    EXPECT_THAT(refused(compare + "--importance --metric rmse_m" + Words(other)),
+                AllOf(HasSubstr(option), HasSubstr("excludes"), HasSubstr("--importance")))
+        << other;
+  }
+  EXPECT_EQ(refused(compare + "--importance --metric rmse_m --where" + Words{"seed == 3"}),
+            "command line: --importance: no two seeds have values in the same two settings, sweep the seed: "
+            "seed=range(0,20)\n");
   EXPECT_THAT(refused(compare + "--by acquisition --metric rmse_m --where" + Words{"taps >"}),
               StartsWith("command line: --where: the condition 'taps >'"));
   fs::create_directory(here() / "empty");
