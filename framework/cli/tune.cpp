@@ -19,6 +19,7 @@
 #include <palpate/error.hpp>
 
 #include <fmt/format.h>
+#include <boost/algorithm/string/replace.hpp>
 
 #include <chrono>
 #include <filesystem>
@@ -35,6 +36,7 @@ namespace fs = std::filesystem;
 
 /// Assumed number of jobs of a race whose budget is a time, if no run can be timed before the race.
 constexpr std::size_t kJobsOfTime = 250;
+constexpr double kMostJobs = 1e6;  ///< limit for budgets in time
 using Clock = std::chrono::steady_clock;
 
 double seconds_since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
@@ -53,7 +55,7 @@ TuneWords words_of(const TuneArguments& arguments) {
   set("time", arguments.time);
   set("within", arguments.within);
   set("fresh", count(arguments.fresh));
-  set("where", arguments.where ? std::optional("'" + *arguments.where + "'") : std::nullopt);
+  if (arguments.where) set("where", "'" + boost::replace_all_copy(*arguments.where, "'", "''") + "'");
   return out;
 }
 
@@ -86,7 +88,8 @@ double try_metric(const CommandEnvironment& program, const TunePlanner& planner,
 /// Returns the number of jobs of the whole race, from `jobs` that took `seconds`.
 std::size_t budget_of(const TuneDescription& description, std::size_t jobs, double seconds) {
   if (description.jobs) return *description.jobs;
-  return static_cast<std::size_t>(static_cast<double>(jobs) * *description.seconds / std::max(seconds, 1e-3));
+  const double all = static_cast<double>(jobs) * *description.seconds / std::max(seconds, 1e-3);
+  return static_cast<std::size_t>(std::min(all, kMostJobs));
 }
 
 /// Prints the state of the race on stderr: on a terminal in place, elsewhere once per tenth of the budget.
@@ -108,6 +111,13 @@ class RaceLine {
   bool terminal_;
   std::size_t tenth_ = 11;
 };
+
+/// Throws Error for options of the launch that a race does not take.
+void check_race_launch(const TuneDescription& description, const LaunchArguments& launch) {
+  if (!launch.junit.empty()) throw Error("command line", "--junit: a race has no expectations", "leave it out");
+  if (description.seconds && is_cluster(launch.launcher) && !launch.wait)
+    throw Error("command line", "--time: a race on a cluster cannot measure its time", "give --jobs, or add --wait");
+}
 
 /// Returns the words with which a cluster continues the race after a round.
 std::vector<std::string> next_command(const fs::path& directory, const LaunchArguments& launch,
@@ -149,6 +159,7 @@ int run_race(CommandEnvironment& program, const fs::path& directory, const Launc
   const Tree config = read_run_config(directory);
   const TuneDescription description(config.find("tune"), {});
   const TunePlanner planner(program.composer, program.host, directory / "config.yaml", description);
+  check_race_launch(description, launch);
   RaceValues values;
   RaceLine line(launch.quiet);
   LaunchArguments silent = launch;
@@ -160,7 +171,9 @@ int run_race(CommandEnvironment& program, const fs::path& directory, const Launc
     const Sweep sweep = read_sweep(directory);
     const RaceRecord race = read_race(sweep, description);
     line.show(race);
-    SweepExecution execution{program, sweep, options, silent, {}, false, {}, next_command(directory, launch, options)};
+    const bool one_at_a_time = program.host.one_at_a_time(planner.own().notes.plugins);
+    SweepExecution execution{program, sweep,         options, silent,
+                             {},      one_at_a_time, {},      next_command(directory, launch, options)};
     std::vector<std::size_t> jobs = all_jobs(sweep);
     jobs.erase(jobs.begin(), jobs.begin() + static_cast<std::ptrdiff_t>(values.metric.size()));
     JobStates begun = read_job_states(sweep, jobs);
@@ -179,7 +192,9 @@ int run_race(CommandEnvironment& program, const fs::path& directory, const Launc
       return program.interrupted->load() ? kInterrupted : kFailed;
     }
     const double seconds = before + seconds_since(begin);
-    if (add_round(planner, directory, budget_of(description, race.race_jobs, seconds), seconds, values)) continue;
+    if (add_round(planner, directory, sweep.rounds.size(), budget_of(description, race.race_jobs, seconds), seconds,
+                  values))
+      continue;
     print_race({sweep, description, race, values});
     set_record_line("record: " + directory.string());
     print_out("record: {}\n", directory.string());
@@ -197,6 +212,7 @@ int tune(CommandEnvironment& program, const TuneArguments& arguments) {
   const TuneDescription description(composed.find("tune"), words_of(arguments));
   const TunePlanner planner(program.composer, program.host, arguments.config, description);
   check_taps_are_own(planner.own(), "backend");
+  check_race_launch(description, arguments.launch);
   const fs::path directory = race_directory(planner, arguments.runs);
   if (is_sweep(directory)) {
     if (!arguments.launch.quiet) print_message(fmt::format("{} exists: the race goes on\n", directory.string()));

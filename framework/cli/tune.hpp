@@ -25,7 +25,7 @@ struct TuneArguments {
 };
 PALPATE_WHOLE int tune(CommandEnvironment& program, const TuneArguments& arguments);
 
-/// Continues the race in a directory for which is_race() is true. Returns the exit status.
+/// Continues the race in the directory of a sweep with rounds. Returns the exit status.
 PALPATE_WHOLE int resume_race(CommandEnvironment& program, const ResumeArguments& arguments);
 
 /// Checks the block `tune:` of the file `config`. Returns the number of settings of its first round. Throws Error.

@@ -64,13 +64,14 @@ std::string job_line(const Sweep& sweep, const Job& job, const std::string& id) 
   return to_json_line(job_list().row({sweep.keys, job, id})) + "\n";
 }
 
-/// Returns the line of a round. `before`: all lines of the manifest before it.
+/// Returns the line of a round. `before`: the lines before it, from the line of the round before on. That line contains
+/// a hash of the lines before it, so the hash of this line covers the whole manifest.
 std::string round_line(std::size_t number, const SweepRound& round, const std::string& before) {
   Row row;
   row.add(kRound, static_cast<std::int64_t>(number));
   row.add("jobs", static_cast<std::int64_t>(round.jobs));
-  row.add("chain", hash_of(before));
   row.fields.insert(row.fields.end(), round.decision.fields.begin(), round.decision.fields.end());
+  row.add("chain", hash_of(before + to_json_line(row)));
   return to_json_line(row) + "\n";
 }
 
@@ -79,8 +80,9 @@ bool is_id(const std::string& text) { return text.size() == kIdLength && begins_
 /// The content of manifest.jsonl.
 struct SweepManifest {
   Sweep sweep;
-  std::string id;         ///< id of the sweep, as the lines of the jobs have it
-  std::size_t bytes = 0;  ///< number of bytes up to the end of the last line that counts
+  std::string id;               ///< id of the sweep, as the lines of the jobs have it
+  std::size_t bytes = 0;        ///< number of bytes up to the end of the last line that counts
+  std::size_t chain_begin = 0;  ///< where the line of the last round begins; 0 if there is none
 };
 
 /// Throws Error, with the line, unless the row is exactly that of its job. The id must be valid, because it is the name
@@ -98,7 +100,8 @@ void add_job(SweepManifest& manifest, const Row& row, const std::string& place) 
   sweep.jobs.push_back(job);
 }
 
-/// Throws Error, with the place, unless the line of this row is that of the next round after the lines `before`.
+/// Throws Error, with the place, unless the line of this row is that of the next round after the lines `before`, as
+/// round_line() takes them.
 void add_round(Sweep& sweep, const Row& row, const std::string& line, const std::string& before,
                const std::string& place) {
   SweepRound round{sweep.jobs.size(), row};
@@ -120,7 +123,8 @@ SweepManifest read_sweep_manifest(const fs::path& directory) {
     const Row row = reader.read(line);
     const bool is_round = !row.fields.empty() && row.fields.front().first == kRound;
     if (is_round) {
-      add_round(out.sweep, row, line, text.substr(0, begin), reader.place());
+      add_round(out.sweep, row, line, text.substr(out.chain_begin, begin - out.chain_begin), reader.place());
+      out.chain_begin = begin;
     } else {
       add_job(out, row, reader.place());
     }
@@ -145,12 +149,15 @@ const FieldList<JobLine>& job_list() {
 std::string manifest_text(const Sweep& sweep, const std::string& id) {
   std::string text;
   std::size_t next = 0;
+  std::size_t chain_begin = 0;
   const auto add_jobs = [&](std::size_t end) {
     for (; next < end; ++next) text += job_line(sweep, sweep.jobs[next], id);
   };
   for (std::size_t round = 0; round < sweep.rounds.size(); ++round) {
     add_jobs(sweep.rounds[round].jobs);
-    text += round_line(round, sweep.rounds[round], text);
+    const std::string line = round_line(round, sweep.rounds[round], text.substr(chain_begin));
+    chain_begin = text.size();
+    text += line;
   }
   add_jobs(sweep.jobs.size());
   return text;
@@ -212,7 +219,8 @@ void append_round(const Sweep& sweep, const std::vector<Job>& jobs, const Row& d
   std::string text = read_file(file).substr(0, manifest.bytes);
   const std::size_t before = text.size();
   for (const Job& job : jobs) text += job_line(sweep, job, manifest.id);
-  text += round_line(sweep.rounds.size(), {sweep.jobs.size() + jobs.size(), decision}, text);
+  text +=
+      round_line(sweep.rounds.size(), {sweep.jobs.size() + jobs.size(), decision}, text.substr(manifest.chain_begin));
   AppendFile manifest_file(file);
   manifest_file.cut(before);  // removes jobs without the line of their round
   manifest_file.append(text.substr(before), true);

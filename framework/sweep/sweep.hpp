@@ -50,8 +50,8 @@ struct Sweep {
 std::string sweep_id(const Tree& config, const Sweep& sweep);
 
 /// Returns the text of manifest.jsonl: one line per job, and one line after the jobs of each round. Each line of a job
-/// contains the id of the sweep, and each line of a round a hash of all lines before it. read_sweep() detects changed
-/// files by them.
+/// contains the id of the sweep, and each line of a round a hash of itself and of all lines before it. read_sweep()
+/// detects changed files by them.
 std::string manifest_text(const Sweep& sweep, const std::string& id);
 
 /// Reads the manifest of a sweep. Throws Error if it is missing or damaged, or if config or manifest have changed since

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "tune/description.hpp"
 
+#include "analysis/bootstrap.hpp"
 #include "config/keys.hpp"
 #include "config/quantity.hpp"
 #include "record/fields.hpp"
@@ -119,6 +120,9 @@ void TuneDescription::read_keys(ValueCount& count) {
   if (const Tree* over = written.find("over")) {
     if (over->kind != Tree::Kind::list || over->items.empty())
       refuse(*over, ".over: expects a list of scenes", "write over: [block, ring]");
+    for (const SweepAxis& one : fixed) {
+      if (one.key == "scene") refuse(*over, ": 'scene' is given as well as several scenes", "leave one of them out");
+    }
     scenes = SweepAxis{"scene", over->items, *over};
   }
   const Tree* condition = written.find("where");
@@ -160,7 +164,9 @@ void TuneDescription::read_budget() {
   }
   if (const Tree* seeds = written.find("fresh")) {
     fresh = static_cast<std::size_t>(read_count(*seeds, "fresh", 0, kMostFresh));
-    if (fresh == 1) refuse(*seeds, ".fresh: one seed has no interval", "write 0, or at least 5");
+    if (fresh > 0 && fresh < kLeastForInterval)
+      refuse(*seeds, ".fresh: so few seeds have no interval",
+             fmt::format("write 0, or at least {}", kLeastForInterval));
   }
 }
 

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numeric>
 #include <optional>
+#include <utility>
 
 namespace palpate {
 namespace {
@@ -99,9 +100,14 @@ std::vector<Loser> find_dominated(const RaceTable& table, const RaceTable& costs
 }
 
 std::vector<std::size_t> front_of_means(const RaceTable& table, const RaceTable& costs) {
+  const std::vector<double> mean = means_of(table);
   const std::vector<double> cost = means_of(costs);
+  std::vector<std::size_t> order = ranked(table);
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return std::make_pair(mean[a], cost[a]) < std::make_pair(mean[b], cost[b]);
+  });
   std::vector<std::size_t> out;
-  for (const std::size_t row : ranked(table)) {
+  for (const std::size_t row : order) {
     if (out.empty() || cost[row] < cost[out.back()]) out.push_back(row);
   }
   return out;

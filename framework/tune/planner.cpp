@@ -24,11 +24,11 @@ TunePlanner::TunePlanner(Composer& composer, const PluginHost& host, const std::
       base_(composer.compose(file_, {})),
       shared_(shared_overrides({}, base_)),
       keys_(description.job_keys()) {
-  JobValues own = job_values(SettingValues(description.keys.size()), std::nullopt);
-  std::vector<Override> overrides = shared_;
-  for (Override& one : overrides_of(own.combination)) overrides.push_back(std::move(one));
-  own_ = resolve_experiment(composer_.compose(file_, overrides), host_);
+  own_ = resolved(SettingValues(description.keys.size()), std::nullopt);
   space_.emplace(description.keys, find_whole_keys());
+  // A scene that cannot be resolved is an error before the race, not in the round that needs it.
+  for (std::size_t scene = 1; description_.scenes && scene < description_.scenes->values.size(); ++scene)
+    resolved(SettingValues(description.keys.size()), scene);
 }
 
 void TunePlanner::JobValues::add(const std::string& key, const Tree& value) {
@@ -52,15 +52,19 @@ TunePlanner::JobValues TunePlanner::job_values(const SettingValues& values, std:
   return out;
 }
 
-bool TunePlanner::is_valid(const SettingValues& values) const {
-  const JobValues job = job_values(values, 0);
+ResolvedConfig TunePlanner::resolved(const SettingValues& values, std::optional<std::size_t> seed) const {
+  const JobValues job = job_values(values, seed);
   std::vector<Override> overrides = shared_;
   for (Override& one : overrides_of(job.combination)) overrides.push_back(std::move(one));
-  return !catch_error([&] { resolve_experiment(composer_.compose(file_, overrides), host_); });
+  return resolve_experiment(composer_.compose(file_, overrides), host_);
 }
 
-/// Returns for each key whether its option takes whole numbers only: it accepts an end of the range, but not a number
-/// between two whole numbers. Options that only some choices have are tried with several settings.
+bool TunePlanner::is_valid(const SettingValues& values) const {
+  return !catch_error([&] { resolved(values, 0); });
+}
+
+/// Returns for each key whether its option takes whole numbers only: it accepts the first whole number of the range,
+/// but not the next number that is not whole. Options that only some choices have are tried with several settings.
 std::vector<bool> TunePlanner::find_whole_keys() const {
   constexpr std::size_t kTrials = 16;
   std::vector<bool> out(description_.keys.size());
@@ -77,7 +81,8 @@ std::vector<bool> TunePlanner::find_whole_keys() const {
       }
       values[key] = number(std::ceil(range->first), "", written);
       if (!is_valid(values)) return false;
-      values[key] = number(std::ceil(range->first) + 0.5, "", written);
+      values[key] =
+          number(0.5 * (std::ceil(range->first) + std::min(std::ceil(range->first) + 1.0, range->last)), "", written);
       return !is_valid(values);
     });
   }
@@ -91,12 +96,18 @@ SettingValues TunePlanner::values_in(const SearchSpace& space, const Point& poin
 }
 
 bool TunePlanner::is_wanted(const SettingValues& values) const {
+  if (description_.where.empty()) return true;
+  const Tree setting = resolved(values, 0).tree;
   const WhereCondition::Values value_of = [&](const std::string& name) -> std::optional<WhereCondition::Value> {
+    bool is_known = own_->tree.find_path(name) != nullptr;
     for (std::size_t key = 0; key < values.size(); ++key) {
-      if (description_.keys[key].key == name && values[key]) return WhereCondition::Value{condition_text(*values[key])};
+      if (description_.keys[key].key != name) continue;
+      if (values[key] && setting.find_path(name) != nullptr) return WhereCondition::Value{condition_text(*values[key])};
+      is_known = true;
     }
-    const Tree* found = own_->tree.find_path(name);
-    return found != nullptr ? std::optional(WhereCondition::Value{condition_text(*found)}) : std::nullopt;
+    const Tree* found = setting.find_path(name);
+    if (found != nullptr) return WhereCondition::Value{condition_text(*found)};
+    return is_known ? std::optional(WhereCondition::Value{}) : std::nullopt;
   };
   std::vector<std::string> known;
   for (const TunedKey& one : description_.keys) known.push_back(one.key);

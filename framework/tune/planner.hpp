@@ -47,7 +47,8 @@ class TunePlanner {
 
   /// Returns the values at a point of the space.
   SettingValues values_at(const Point& point) const { return values_in(*space_, point); }
-  /// Returns whether the conditions of the description hold for a setting. Throws Error for an unknown name.
+  /// Returns whether the conditions of the description hold for a setting, with all options as it has them. Throws
+  /// Error for an unknown name.
   bool is_wanted(const SettingValues& values) const;
 
   /// Returns the jobs of the settings, seed by seed. A job that is equal to an earlier one is left out, for example if
@@ -70,6 +71,8 @@ class TunePlanner {
   JobValues job_values(const SettingValues& values, std::optional<std::size_t> seed) const;
   static SettingValues values_in(const SearchSpace& space, const Point& point);
   std::vector<bool> find_whole_keys() const;
+  /// Returns the config of a job. Throws Error.
+  ResolvedConfig resolved(const SettingValues& values, std::optional<std::size_t> seed) const;
   /// Returns whether the job of these values can be resolved.
   bool is_valid(const SettingValues& values) const;
 

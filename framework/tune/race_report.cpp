@@ -22,15 +22,10 @@ namespace {
 
 constexpr std::size_t kMostRows = 10;
 
-/// Returns the mean of a setting over the seeds on which it ran in the race, as the metric has it. Returns nullopt if
-/// no run has a value.
-std::optional<double> mean_of_setting(const RaceResults& results, std::size_t setting) {
-  std::vector<double> values;
-  for (const std::size_t job : results.race.settings[setting].jobs) {
-    if (results.values.metric[job]) values.push_back(*results.values.metric[job]);
-  }
-  if (values.empty()) return std::nullopt;
-  return results.description.more_is_better ? -mean_of(values) : mean_of(values);
+/// Returns the mean of a setting over its seeds in the race, as the metric has it. Missing values count as in the race.
+double mean_of_setting(const RaceResults& results, std::size_t setting) {
+  const double mean = mean_of(race_table(results.race, results.values.metric)[setting]);
+  return results.description.more_is_better ? -mean : mean;
 }
 
 const Loser* loss_of(const RaceRecord& race, std::size_t setting) {
@@ -87,7 +82,7 @@ std::string settings_words(const RaceResults& results, std::size_t setting) {
 DisplayScale scale_of(const RaceResults& results) {
   std::vector<double> means;
   for (std::size_t setting = 0; setting < results.race.settings.size(); ++setting) {
-    if (const auto mean = mean_of_setting(results, setting)) means.push_back(*mean);
+    means.push_back(mean_of_setting(results, setting));
   }
   return readable_scale(unit_of_column(results.description.metric), means);
 }
@@ -150,6 +145,14 @@ std::string fresh_words(const RaceResults& results) {
   return words;
 }
 
+/// Returns the metric of a job on a fresh seed. A missing value counts as the worst one of all runs.
+double fresh_value(const RaceResults& results, std::size_t job) {
+  if (results.values.metric[job]) return *results.values.metric[job];
+  std::optional<double> worst;
+  for (const std::optional<double>& one : results.values.metric) worst = std::max(worst, one);
+  return worst.value_or(0.0);
+}
+
 }  // namespace
 
 MeanEstimate fresh_gain(const RaceResults& results) {
@@ -159,9 +162,7 @@ MeanEstimate fresh_gain(const RaceResults& results) {
   const std::vector<std::size_t>& own = race.settings[0].fresh;
   const std::vector<std::size_t>& other = race.settings[race.front.front()].fresh;
   for (std::size_t i = 0; i < std::min(own.size(), other.size()); ++i) {
-    const auto& first = results.values.metric[own[i]];
-    const auto& second = results.values.metric[other[i]];
-    if (first && second) gains.push_back({*first - *second});
+    gains.push_back({fresh_value(results, own[i]) - fresh_value(results, other[i])});
   }
   return gains.empty() ? MeanEstimate{} : mean_of_sample(gains);
 }
@@ -222,6 +223,8 @@ std::string race_text(const RaceResults& results) {
   if (!race.has_ended())
     return out + fmt::format("{} runs so far, {} settings are in the race\n", race.race_jobs, race.state.racing.size());
   out += fmt::format("{} runs; the race ended because {}\n", race.race_jobs, race.end);
+  const auto missing = std::count(results.values.metric.begin(), results.values.metric.end(), std::nullopt);
+  if (missing > 0) out += fmt::format("{} runs failed or have no value; they count as the worst result\n", missing);
   if (results.description.cost) out += front_text(results);
   return out + fresh_words(results) + "\n";
 }
@@ -236,11 +239,13 @@ std::string config_of_setting(const RaceResults& results, std::size_t setting) {
   const Job& first = results.sweep.jobs[race.settings[setting].jobs.front()];
   Tree config = read_run_config(job_directory(results.sweep, first));
   config.erase("expect");
+  // Sweeps record no surfaces unless their config demands it.
+  if (read_run_config(results.sweep.directory).find_path("log.surface") == nullptr) config.erase_path("log.surface");
   // With a new name, the run gets a folder runs/NAME of its own.
   Tree& name = config.at("name");
   name = Tree::scalar(name.text + "_best", true);
-  std::string comment =
-      fmt::format("Best of {} settings: {}\n", race.settings.size(), settings_words(results, setting));
+  std::string comment = fmt::format("{} {} settings: {}\n", results.description.cost ? "On the front of" : "Best of",
+                                    race.settings.size(), settings_words(results, setting));
   for (const TunedKey& one : results.description.keys)
     comment += fmt::format("tried: {}={}\n", one.key, value_text(one.written));
   comment += fmt::format("metric: {}; {} runs; {}\n{}", results.description.metric, race.race_jobs, race.end,

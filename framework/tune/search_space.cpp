@@ -18,7 +18,7 @@
 namespace palpate {
 namespace {
 
-constexpr std::size_t kMostSettings = 1'000'000;
+constexpr std::size_t kMostSettings = 10'000;
 constexpr double kRedraw = 0.1;  ///< probability of a new value of a list
 
 /// Rounds to six significant digits: finer differences of a setting do not matter, and tables remain readable.
@@ -58,7 +58,7 @@ std::vector<Point> SearchSpace::grid() const {
   std::vector<Point> out{{}};
   for (const TunedKey& key : keys_) {
     if (out.size() * key.values.size() > kMostSettings)
-      throw Error(key.written.place.text(), fmt::format("{}: there are more than a million settings", key.key),
+      throw Error(key.written.place.text(), fmt::format("{}: there are more than 10000 settings", key.key),
                   "use fewer values, or a continuous range");
     std::vector<Point> longer;
     for (const Point& point : out) {
@@ -109,9 +109,11 @@ Tree SearchSpace::value(std::size_t key, double coordinate) const {
 std::optional<double> SearchSpace::coordinate(std::size_t key, const std::string& text) const {
   const TunedKey& tuned = keys_[key];
   if (!tuned.range) {
-    for (std::size_t value = 0; value < tuned.values.size(); ++value) {
-      if (condition_text(tuned.values[value]) == text || value_text(tuned.values[value]) == text)
-        return static_cast<double>(value);
+    // A list may contain a type both with options and as a name, so the whole text is compared first.
+    for (std::string (*text_of)(const Tree&) : {value_text, condition_text}) {
+      for (std::size_t value = 0; value < tuned.values.size(); ++value) {
+        if (text_of(tuned.values[value]) == text) return static_cast<double>(value);
+      }
     }
     return std::nullopt;
   }

@@ -19,14 +19,14 @@ using Point = std::vector<double>;
 
 class SearchSpace {
  public:
-  /// `is_whole`: for each key, whether its option takes whole numbers only. Throws Error for a range of a whole number
-  /// with a unit or without a whole number.
+  /// `is_whole`: for each key, whether its option takes whole numbers only. Throws Error for a range of whole
+  /// numbers that contains none.
   SearchSpace(const std::vector<TunedKey>& keys, std::vector<bool> is_whole);
 
   /// Returns whether all keys have lists, so that there are only finitely many settings.
   bool is_finite() const;
 
-  /// Returns all settings of lists; the last key varies fastest. Throws Error for more than a million settings.
+  /// Returns all settings of lists; the last key varies fastest. Throws Error for more than 10000 settings.
   std::vector<Point> grid() const;
   /// Returns the first `count` points of a Sobol sequence. Lists are dimensions of the sequence, too.
   std::vector<Point> sobol(std::size_t count) const;

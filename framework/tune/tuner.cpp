@@ -62,12 +62,16 @@ Row round_row(const RaceDecision& decision, std::optional<double> seconds) {
   return row;
 }
 
+Error damaged(const Sweep& sweep, const char* field) {
+  return {(sweep.directory / "manifest.jsonl").string(), fmt::format("a round has no valid '{}'", field),
+          "the file is damaged: put it back as it was"};
+}
+
 /// Returns a whole number of a round. Throws Error if it is missing, negative, or not below `limit`.
 std::size_t whole(const Row& row, const char* name, std::size_t limit, const Sweep& sweep) {
   const std::optional<double> value = row.number(name);
   if (value && *value >= 0.0 && *value < static_cast<double>(limit)) return static_cast<std::size_t>(*value);
-  throw Error((sweep.directory / "manifest.jsonl").string(), fmt::format("a round has no valid '{}'", name),
-              "the file is damaged: put it back as it was");
+  throw damaged(sweep, name);
 }
 
 /// Returns the numbers in a list such as [0, 3, 7].
@@ -176,14 +180,20 @@ void write_job(const Sweep& sweep, const Job& job, const ResolvedConfig& config)
   write_file(directory / "config.yaml", to_yaml_with_places(config.tree));
 }
 
+/// Returns the settings that run on fresh seeds: those on the front, and the config as it stands.
+std::vector<std::size_t> compared_settings(const RaceDecision& decision) {
+  std::vector<std::size_t> out = decision.front;
+  if (std::count(out.begin(), out.end(), std::size_t{0}) == 0) out.push_back(0);
+  return out;
+}
+
 /// Returns the settings and seeds of the next round.
 std::vector<PlannedSetting> settings_of_round(const TunePlanner& planner, const RaceRecord& race,
                                               const RaceDecision& decision, std::size_t round) {
   std::vector<PlannedSetting> out;
   if (!decision.end.empty()) {
     const std::size_t fresh = planner.description().fresh;
-    std::vector<std::size_t> compared = decision.front;
-    if (std::count(compared.begin(), compared.end(), std::size_t{0}) == 0) compared.push_back(0);
+    const std::vector<std::size_t> compared = compared_settings(decision);
     if (compared.size() == 1 || fresh == 0) return out;
     std::size_t used = 0;
     for (const RacedSetting& one : race.settings) used = std::max(used, one.jobs.size());
@@ -218,6 +228,18 @@ void check_values(const std::vector<std::optional<double>>& results, const std::
               "see 'palpate compare' for the reasons, or tune another metric");
 }
 
+/// Throws Error unless the state of a race fits its settings.
+void check_state(const RaceRecord& race, const Sweep& sweep) {
+  const std::vector<std::size_t>& racing = race.state.racing;
+  if (racing.empty() || !std::is_sorted(racing.begin(), racing.end()) ||
+      std::adjacent_find(racing.begin(), racing.end()) != racing.end())
+    throw damaged(sweep, kRacing);
+  for (const std::size_t one : racing) {
+    if (race.state.seeds < kFirstSeeds || race.settings[one].jobs.size() < race.state.seeds)
+      throw damaged(sweep, kSeeds);
+  }
+}
+
 }  // namespace
 
 RaceRecord read_race(const Sweep& sweep, const TuneDescription& description) {
@@ -231,6 +253,7 @@ RaceRecord read_race(const Sweep& sweep, const TuneDescription& description) {
   std::size_t next = 0;
   for (const SweepRound& round : sweep.rounds) {
     const bool is_fresh = round.decision.find(kEnd) != nullptr;
+    if (is_fresh && &round != &sweep.rounds.back()) throw damaged(sweep, kEnd);
     for (; next < round.jobs; ++next) {
       const std::vector<std::string> values = tuned_values(sweep.jobs[next], keys);
       const auto [number, is_new] = numbers.emplace(values, out.settings.size());
@@ -251,13 +274,15 @@ RaceRecord read_race(const Sweep& sweep, const TuneDescription& description) {
   out.state = {whole(last, kStage, kLastStage + 1, sweep), whole(last, kBudget, kMostBudget, sweep),
                whole(last, kStageEnd, kMostBudget, sweep), whole(last, kSeeds, sweep.jobs.size() + 1, sweep),
                numbers_in(last, kRacing, all, sweep)};
+  check_state(out, sweep);
   out.seconds = last.number(kSeconds).value_or(0.0);
   out.end = last.text(kEnd);
   if (!out.has_ended()) return out;
   out.front = numbers_in(last, kFront, all, sweep);
-  if (out.front.empty())
-    throw Error((sweep.directory / "manifest.jsonl").string(), "the last round names no best setting",
-                "the file is damaged: put it back as it was");
+  for (const std::size_t one : out.front) {
+    if (out.settings[one].jobs.empty()) throw damaged(sweep, "front");
+  }
+  if (out.front.empty()) throw damaged(sweep, "front");
   return out;
 }
 
@@ -296,7 +321,7 @@ SweepPlan plan_first_round(const TunePlanner& planner, std::size_t budget, const
   const bool is_search = !space.is_finite();
   if (is_search && budget < kLeastBudget)
     throw Error("tune", fmt::format("{} jobs are too few for a search in continuous ranges", budget),
-                fmt::format("give at least {}, or lists of values", kLeastBudget));
+                fmt::format("give at least {}, more time, or lists of values", kLeastBudget));
   std::vector<PlannedSetting> settings{{SettingValues(planner.description().keys.size()), 0, kFirstSeeds}};
   const std::size_t most = initial_settings(budget);
   for (const Point& point : is_search ? space.sobol(kDrawsPerSetting * most) : space.grid()) {
@@ -304,14 +329,26 @@ SweepPlan plan_first_round(const TunePlanner& planner, std::size_t budget, const
     SettingValues values = planner.values_at(point);
     if (planner.is_wanted(values)) settings.push_back({std::move(values), 0, kFirstSeeds});
   }
-  const std::vector<std::string>& keys = planner.keys();
-  SweepPlan plan{{{}, keys, planner.plan(settings, 0, true, sink)}, planner.written()};
+  const std::string place = planner.description().written.find("keys")->place.text();
+  // Settings that are equal to others are left out below, but never more than all but one.
+  if (settings.size() > budget)
+    throw Error("tune", fmt::format("{} jobs are fewer than the {} settings", budget, settings.size()),
+                "give more jobs or more time, or fewer values");
+  SweepPlan plan{{{}, planner.keys(), planner.plan(settings, 0, true, sink)}, planner.written()};
   check_readable(plan.config, planner.own().options.name);
   if (plan.sweep.jobs.size() > budget)
     throw Error("tune",
                 fmt::format("{} jobs are fewer than the first round needs: {} settings on {} seeds", budget,
                             plan.sweep.jobs.size() / kFirstSeeds, kFirstSeeds),
-                fmt::format("give at least {}, or fewer values", plan.sweep.jobs.size()));
+                fmt::format("give at least {}, more time, or fewer values", plan.sweep.jobs.size()));
+  if (plan.sweep.jobs.size() == kFirstSeeds)
+    throw Error(place, "tune: no setting differs from the config as it stands",
+                "give other values, or a condition that some of them fulfil");
+  std::set<std::vector<std::string>> values;
+  for (const Job& job : plan.sweep.jobs) values.insert(tuned_values(job, planner.description().keys.size()));
+  if (values.size() * kFirstSeeds != plan.sweep.jobs.size())
+    throw Error(place, "tune: two settings have the same type, but different options",
+                "name the group that the config itself has in the list");
   RaceDecision decision;
   decision.state.budget = budget;
   decision.state.stage_end = first_stage_end({is_search, 0.0}, budget);
@@ -327,11 +364,12 @@ fs::path race_directory(const TunePlanner& planner, const fs::path& runs) {
   return runs / slug(planner.own().options.name) / sweep_id(planner.written(), sweep);
 }
 
-bool add_round(const TunePlanner& planner, const fs::path& directory, std::size_t budget, double seconds,
-               RaceValues& results) {
+bool add_round(const TunePlanner& planner, const fs::path& directory, std::size_t rounds, std::size_t budget,
+               double seconds, RaceValues& results) {
   const TuneDescription& description = planner.description();
   const FileLock lock = FileLock::wait_for(directory / "lock");
   const Sweep sweep = read_sweep(directory);
+  if (sweep.rounds.size() != rounds) return true;  // Another process has added a round; its jobs may not have ended.
   RaceRecord race = read_race(sweep, description);
   read_results(sweep, description, results);
   if (race.has_ended()) return false;
@@ -346,7 +384,7 @@ bool add_round(const TunePlanner& planner, const fs::path& directory, std::size_
   for (;;) {
     RaceDecision decision =
         decide(rules, race.state, table, description.cost ? &costs : nullptr, budget, race.race_jobs);
-    check_unchanged(planner, sweep, race, decision.end.empty() ? decision.state.racing : decision.front);
+    check_unchanged(planner, sweep, race, decision.end.empty() ? decision.state.racing : compared_settings(decision));
     const std::vector<PlannedSetting> settings = settings_of_round(planner, race, decision, sweep.rounds.size());
     std::vector<Job> jobs;
     if (!settings.empty()) {

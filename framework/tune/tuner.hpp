@@ -60,13 +60,13 @@ SweepPlan plan_first_round(const TunePlanner& planner, std::size_t budget, const
                            const JobSink& sink);
 
 /// Decides the next round from the results, creates the directories of its jobs, and appends the round to the manifest.
-/// All jobs must have ended. If another process has added a round meanwhile, does nothing. `seconds`: wall time of the
-/// race so far. `budget`: number of jobs of the whole race. `results`: those that read_results() appended in earlier
-/// calls. Returns false if the race has ended.
+/// `rounds`: number of rounds whose jobs have all ended. If another process has added a round meanwhile, does nothing
+/// and returns true. `seconds`: wall time of the race so far. `budget`: number of jobs of the whole race. `results`:
+/// those that read_results() appended in earlier calls. Returns false if the race has ended.
 ///
-/// Throws Error if most runs of the first round have no value, or if the groups of the config were changed since the
-/// first round.
-bool add_round(const TunePlanner& planner, const std::filesystem::path& directory, std::size_t budget, double seconds,
-               RaceValues& results);
+/// Throws Error if most runs so far have no value, or if the groups of the settings in the race were changed since
+/// their first run.
+bool add_round(const TunePlanner& planner, const std::filesystem::path& directory, std::size_t rounds,
+               std::size_t budget, double seconds, RaceValues& results);
 
 }  // namespace palpate

@@ -169,6 +169,7 @@ TEST(Dominated, AreNoneIfEachSettingIsTheBestInSomething) {
   EXPECT_THAT(front_of_means(errors, costs), ElementsAre(0, 1, 2, 3, 4));
   costs[2] = std::vector<double>(6, 0.5);
   EXPECT_THAT(front_of_means(errors, costs), ElementsAre(0, 1, 3, 4)) << "the second is as good and cheaper";
+  EXPECT_THAT(front_of_means({{1.0, 1.0}, {1.0, 1.0}}, {{2.0, 2.0}, {1.0, 1.0}}), ElementsAre(1)) << "equal errors";
 }
 
 TEST(Race, OfTwoMetricsKeepsSettingsFromBothEndsOfTheFront) {

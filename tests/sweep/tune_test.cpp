@@ -88,7 +88,8 @@ TEST(TuneDescription, RejectsWhatCannotBeTunedInOneLineWithTheRemedy) {
   EXPECT_THAT(refused("{keys: {taps: [5, 6]}, metric: rmse_m}"), HasSubstr("no budget is given"));
   EXPECT_THAT(refused("{keys: {taps: [5, 6]}, metric: rmse_m, jobs: 9, time: 1 s}"), HasSubstr("exclude each other"));
   EXPECT_THAT(refused("{keys: {taps: [5, 6]}, metric: rmse_m, jobs: 9, within: 3 s}"), HasSubstr("tune.within"));
-  EXPECT_THAT(refused("{keys: {taps: [5, 6]}, metric: rmse_m, jobs: 9, fresh: 1}"), HasSubstr("tune.fresh: one seed"));
+  EXPECT_THAT(refused("{keys: {taps: [5, 6]}, metric: rmse_m, jobs: 9, fresh: 1}"),
+              HasSubstr("tune.fresh: so few seeds"));
   EXPECT_EQ(refused("{keyz: {}}"), "c.yaml:1:8: unknown option 'keyz' of tune, did you mean 'keys'?");
 }
 
@@ -124,6 +125,14 @@ TEST(SearchSpace, ReturnsTheCoordinateOfEachOfItsValues) {
   EXPECT_EQ(space.coordinate(0, "1 m"), 1.0) << "clipped";
   EXPECT_EQ(space.coordinate(0, "2 s"), std::nullopt);
   EXPECT_EQ(space.coordinate(2, "sum"), std::nullopt);
+}
+
+TEST(SearchSpace, DistinguishesATypeWithOptionsFromItsName) {
+  const TuneDescription description =
+      described("{keys: {kernel: [{type: matern52, length_scale: 1.8 cm}, matern52]}, metric: rmse_m, jobs: 99}");
+  const SearchSpace space(description.keys, {false});
+  EXPECT_EQ(space.coordinate(0, "matern52"), 1.0);
+  EXPECT_EQ(space.coordinate(0, value_text(space.value(0, 0.0))), 0.0);
 }
 
 TEST(SearchSpace, DrawsNeighboursWithinTheRanges) {
@@ -184,15 +193,50 @@ TEST(FirstRound, LeavesOutSettingsThatViolateTheCondition) {
   for (std::size_t i = 1; i < 32; ++i) EXPECT_GT(length_scale(made.configs[i]), 0.03);
 }
 
+TEST(FirstRound, JudgesTheConditionByTheOptionsOfEachSetting) {
+  const Planned made =
+      planned(described("{keys: {kernel: [{type: matern52, length_scale: 5 cm}, {type: rbf, length_scale: 1 cm}]}, "
+                        "metric: rmse_m, jobs: 99, "
+                        "where: kernel.length_scale < 2 cm}"));
+  ASSERT_THAT(made.configs, SizeIs(8));
+  EXPECT_DOUBLE_EQ(length_scale(made.configs[1]), 0.01);
+}
+
+TEST(FirstRound, IsRejectedIfNoSettingDiffersFromTheConfigOrTwoLookAlike) {
+  TuneWords given = words({"taps=10,12"});
+  given.settings.emplace_back("where", "taps > 100");
+  EXPECT_THAT(test::error_of([&] { planned(TuneDescription(nullptr, given)); }),
+              HasSubstr("no setting differs from the config as it stands"));
+  const test::TemporaryFolder folder;
+  std::string gentle = test::text_of(kPaper);
+  const std::string group = "  - backend: simulator\n";
+  gentle.insert(gentle.find(group) + group.size(), "  - motion: gentle\n");
+  const fs::path file = folder.write("gentle.yaml", gentle);
+  EXPECT_THAT(test::error_of([&] { planned(TuneDescription(nullptr, words({"motion=continuous,two_stage"})), file); }),
+              HasSubstr("two settings have the same type, but different options"));
+}
+
+TEST(FirstRound, ChecksAllScenesBeforeTheRace) {
+  TuneWords given = words({"kernel.length_scale=2cm,4cm"}, "40");
+  given.scenes = {"block", "ring", "block", "ring", "nonsense"};
+  EXPECT_THAT(test::error_of([&] { planned(TuneDescription(nullptr, given), kConfigs / "default.yaml"); }),
+              HasSubstr("nonsense"));
+  given.scenes = {"block", "ring"};
+  given.keys.emplace_back("scene=block");
+  EXPECT_THAT(test::error_of([&] { TuneDescription(nullptr, given); }), HasSubstr("leave one of them out"));
+}
+
 TEST(FirstRound, IsRejectedIfTheBudgetDoesNotSuffice) {
   const auto line = [](const std::string& key, std::size_t budget) {
     return test::error_of([&] { planned(TuneDescription(nullptr, words({key})), kPaper, budget); });
   };
   EXPECT_EQ(
       line("kernel.length_scale=1cm,2cm,3cm", 15),
-      "tune: 15 jobs are fewer than the first round needs: 4 settings on 4 seeds, give at least 16, or fewer values");
+      "tune: 15 jobs are fewer than the first round needs: 4 settings on 4 seeds, give at least 16, more time, or "
+      "fewer values");
   EXPECT_EQ(line("kernel.length_scale=uniform(1cm,2cm)", 59),
-            "tune: 59 jobs are too few for a search in continuous ranges, give at least 60, or lists of values");
+            "tune: 59 jobs are too few for a search in continuous ranges, give at least 60, more time, or "
+            "lists of values");
   EXPECT_THAT(line("kernel.lenght_scale=1cm,2cm", 100), HasSubstr("did you mean 'length_scale'?"));
   EXPECT_THAT(line("belief.height.noise=3", 100), HasSubstr("no key has several values"));
 }

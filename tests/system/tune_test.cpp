@@ -83,10 +83,25 @@ TEST_F(Tune, IgnoresJobsWithoutTheLineOfTheirRoundAndRejectsChangedLines) {
   write(manifest, whole.substr(0, last + 20));
   ASSERT_EQ(resume(directory()).status, 0);
   EXPECT_EQ(text_of(manifest), whole);
-  replace(manifest, "\"seeds\": 4", "\"seeds\": 5");
-  const test::Ended ended = resume(directory());
-  EXPECT_EQ(ended.status, 2);
-  EXPECT_THAT(ended.err, HasSubstr("is not a round of this sweep, or lines before it were changed"));
+  for (const auto& [old, changed] :
+       {std::pair("\"seeds\": 4", "\"seeds\": 5"), std::pair("\"end\": \"", "\"end\": \"x")}) {
+    replace(manifest, old, changed);  // in the first and in the last round
+    const test::Ended ended = resume(directory());
+    EXPECT_EQ(ended.status, 2);
+    EXPECT_THAT(ended.err, HasSubstr("is not a round of this sweep, or lines before it were changed"));
+    write(manifest, whole);
+  }
+}
+
+TEST_F(Tune, TwoProcessesAtOnceMakeTheDecisionsOfOne) {
+  const Words words = race({"backend.pace=0.001", "-j", "1"});
+  ASSERT_EQ(palpate(words + Words{"--runs", "alone"}).status, 0);
+  auto first = begin(words + Words{"--runs", "both"});
+  ASSERT_TRUE(test::eventually([&] { return fs::exists(here() / "both") && !fs::is_empty(here() / "both"); }));
+  auto second = begin(words + Words{"--runs", "both"});
+  EXPECT_EQ(first->wait().status, 0);
+  EXPECT_EQ(second->wait().status, 0);
+  EXPECT_EQ(text_of(directory("both") / "manifest.jsonl"), text_of(directory("alone") / "manifest.jsonl"));
 }
 
 TEST_F(Tune, RejectsInOneLineWhatCannotBeRacedAndBeginsNothing) {

@@ -106,7 +106,7 @@ def tune(config, keys, *, metric, cost=None, jobs=None, time=None, within=None, 
     """
     words = [f"{key}={_program.values_text(value)}" for key, value in keys.items()]
     options = {"--metric": metric, "--cost": cost, "--jobs": jobs, "--time": time, "--within": within, "--fresh": fresh, "--where": where,
-               "--over": over and ",".join(over), "--runs": _os.fspath(runs), "-j": workers}
+               "--over": over if over is None or isinstance(over, str) else ",".join(over), "--runs": _os.fspath(runs), "-j": workers}
     words += [text for name, value in options.items() if value is not None for text in (name, str(value))]
     status, said = _program.conduct([_palpate.program, "tune", _os.fspath(config), *words], progress)
     if status == 2:

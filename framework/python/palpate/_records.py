@@ -283,8 +283,8 @@ class Race:
     @property
     def table(self) -> np.ndarray:
         """Structured array with one row per setting: the values of the keys as texts, `seeds` and the mean of the metric. A
-        setting that lost has the number of seeds after which it did, its difference to the best one, and p. The row with
-        `is_best` has the gain over the config as it stands on `fresh_seeds`, with its 95 % interval. In SI units."""
+        setting that lost has the number of seeds after which it did, its difference to the best one, and p. The row of
+        the winner has the gain over the config as it stands on `fresh_seeds`, with its 95 % interval. In SI units."""
         return _table(_program.race_columns(os.path.join(self.directory, "race.csv")))
 
     @property
