@@ -33,7 +33,7 @@ framework/scene 749 0
 framework/shared 1392 0 # counts of factorisations for beliefs
 plugins/beliefs 3060 9 # the belief solids
 framework/sweep 1975 0 # rounds; pooled records in files of their own
-framework/tune 1430 0 # the race of palpate tune
+framework/tune 1480 0 # the race of palpate tune
 framework/watch 714 0
 plugins 33 78
 plugins/acquisitions 799 96 # each folder builds itself
@@ -58,7 +58,7 @@ tests/report 1301 85
 tests/slurm 515 0 # races
 tests/stability 2435 0
 tests/support 2295 0 # the simulator as a program of the backend process; grids of candidates, which only tests make
-tests/sweep 4990 0 # races, power, importance
+tests/sweep 5200 0 # races, power, importance
 tests/system 9680 0 # tune; lines of any direction for programs and records; beliefs
 tests/unit 17395 0 # oracles of the footprint: pushes, calibration, enumeration, joint distribution; strategies over other beliefs
 tests/ur_rtde 0 230

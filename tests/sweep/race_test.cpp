@@ -16,10 +16,8 @@
 namespace palpate {
 namespace {
 
-using ::testing::Each;
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
-using ::testing::Lt;
 using ::testing::SizeIs;
 
 /// Approximately normal: the sum of twelve uniform numbers (Irwin and Hall), with variance 1.
