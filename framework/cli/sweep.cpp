@@ -10,12 +10,8 @@
 #include "cli/sweep_display.hpp"
 #include "cli/sweep_execution.hpp"
 #include "cli/tune.hpp"
-#include "cli/watcher.hpp"
 #include "config/catch_error.hpp"
 #include "launch/job.hpp"
-#include "launch/mounts.hpp"
-#include "launch/parallel_children.hpp"
-#include "launch/slurm_launcher.hpp"
 #include "record/files.hpp"
 #include "record/run.hpp"
 #include "report/words/words.hpp"
@@ -28,8 +24,6 @@
 #include <boost/algorithm/string/split.hpp>
 
 #include <charconv>
-#include <csignal>
-#include <memory>
 #include <optional>
 #include <set>
 #include <utility>

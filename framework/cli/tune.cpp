@@ -23,7 +23,6 @@
 
 #include <chrono>
 #include <filesystem>
-#include <numeric>
 #include <optional>
 #include <utility>
 

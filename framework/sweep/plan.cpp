@@ -8,12 +8,9 @@
 #include <palpate/error.hpp>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <optional>
-#include <set>
-#include <unordered_map>
 #include <utility>
 
 namespace palpate {

@@ -17,6 +17,19 @@ import palpate
 from support import BUILD, DEFAULT, FolderTest, read_csv, run_palpate
 
 
+class Importance(FolderTest):
+    def test_the_shares_of_the_keys_are_those_of_the_program(self):
+        config = pathlib.Path(DEFAULT).parent / "paper" / "object_i.yaml"
+        sweep = palpate.sweep(config, "acquisition=weighted,random", "taps=6,12", "seed=range(0,8)", runs=self.folder)
+        shares = sweep.importance("rmse_m")
+        self.assertEqual(set(shares["keys"]), {"acquisition", "taps", "acquisition,taps"})
+        self.assertAlmostEqual(shares["share"].sum(), 1.0, delta=1e-9)
+        self.assertTrue(shares["exact"].all())
+        self.assertTrue(((shares["low_95"] <= shares["share"]) & (shares["share"] <= shares["high_95"])).all())
+        with self.assertRaisesRegex(palpate.InputError, "no_such"):
+            sweep.importance("no_such")
+
+
 class Races(FolderTest):
     def test_a_race_from_python_has_the_table_and_the_best_setting_of_the_program(self):
         config = pathlib.Path(DEFAULT).parent / "paper" / "object_i.yaml"
@@ -30,6 +43,7 @@ class Races(FolderTest):
         self.assertEqual(table["is_best"].sum(), 1)
         self.assertEqual(set(race.best), {"kernel.length_scale", "acquisition"})
         self.assertTrue(os.path.exists(race.best_config))
+        self.assertGreater(len(heard), 1)
         self.assertEqual(heard, sorted(set(heard)))
         # The mean of a setting is the mean of its runs, without those on fresh seeds.
         jobs = race.sweep.table

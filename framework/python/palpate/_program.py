@@ -12,6 +12,7 @@ import sys
 
 import numpy as np
 
+from ._errors import make_error
 from ._palpate import program
 
 
@@ -106,6 +107,15 @@ def curve_columns(file, keys):
         else:
             out.append((name, np.array([float(cell) if cell else np.nan for cell in cells])))
     return out
+
+
+def importance_rows(directories, metric, where):
+    """Returns the rows of `palpate compare --importance` as dicts. Raises InputError."""
+    command = [program, "compare", *directories, "--importance", "--metric", metric, "--format", "json"]
+    done = subprocess.run([*command, *(["--where", where] if where is not None else [])], capture_output=True, text=True)
+    if done.returncode != 0:
+        raise make_error("importance", done.stderr.strip().removeprefix("command line: "), "")
+    return json.loads(done.stdout)
 
 
 def race_columns(file):

@@ -258,6 +258,16 @@ class Sweep:
             return _table((name, _numbers(values) if isinstance(values, list) else values)
                           for name, values in _program.curve_columns(file, self.keys))
 
+    def importance(self, metric=None, *, where=None) -> np.ndarray:
+        """Computes which key matters, as `palpate compare --importance` does: a structured array with one row per key and per
+        pair of keys, the most important key first.
+
+        Fields: `keys`, a text with commas, "" for the rest; `share` of the variance between the settings, 0 to 1, with the ends
+        `low_95` and `high_95` of its 95 % interval, NaN without an interval; `exact`, False if a Gaussian process approximates
+        the shares; `noise`. Default of `metric` as in curves(). Raises InputError, also for fewer than two varied keys.
+        """
+        rows = _program.importance_rows(self._directories, metric or _main_error(self.table), where)
+        return _table((name, [row[name] for row in rows]) for name in rows[0] if name != "metric")
 
 def _plotted(draw):
     try:
