@@ -241,6 +241,24 @@ TEST(FirstRound, IsRejectedIfTheBudgetDoesNotSuffice) {
   EXPECT_THAT(line("belief.height.noise=3", 100), HasSubstr("no key has several values"));
 }
 
+TEST(ReadRace, RejectsARoundThatDoesNotFitItsSettings) {
+  const TuneDescription description(nullptr, words({"kernel.length_scale=1cm,2cm,3cm"}));
+  const Sweep good = planned(description).plan.sweep;
+  EXPECT_THAT(read_race(good, description).settings, SizeIs(4));
+  const auto line = [&](const std::string& field, const Scalar& value) {
+    Sweep bad = good;
+    for (auto& [name, old] : bad.rounds.front().decision.fields) {
+      if (name == field) old = value;
+    }
+    return test::error_of([&] { read_race(bad, description); });
+  };
+  for (const char* const racing : {"[]", "[1, 1]", "[2, 1]", "[4]", "[-1]"})
+    EXPECT_THAT(line("racing", JsonList{racing}), HasSubstr("a round has no valid 'racing'")) << racing;
+  for (const std::int64_t seeds : {0, 1, 5, 1000})
+    EXPECT_THAT(line("seeds", seeds), HasSubstr("a round has no valid 'seeds'")) << seeds;
+  EXPECT_THAT(line("stage", std::int64_t{7}), HasSubstr("a round has no valid 'stage'"));
+}
+
 TEST(FirstRound, CanBePlannedAgainFromTheConfigThatItWrites) {
   const test::TemporaryFolder folder;
   const TuneDescription description(nullptr, words({"kernel.length_scale=log_uniform(5mm,10cm)", "kernel=rbf,matern52",
