@@ -143,11 +143,9 @@ void print_race(const RaceResults& results) {
   write_results(results.sweep);
   write_file(directory / "race.csv", to_csv(race_rows(results)));
   print_text(race_text(results));
-  if (!results.race.has_ended()) return;
-  const std::vector<std::size_t> best = best_settings(results);
-  for (std::size_t i = 0; i < best.size(); ++i) {
+  for (std::size_t i = 0; i < results.best.size(); ++i) {
     const fs::path file = directory / (results.description.cost ? fmt::format("front_{}.yaml", i + 1) : "best.yaml");
-    write_file(file, config_of_setting(results, best[i]));
+    write_file(file, config_of_setting(results, results.best[i]));
     print_out("{}: {}\n", results.description.cost ? "on the front" : "best setting", file.string());
   }
 }

@@ -47,7 +47,8 @@ class Launcher {
   /// Stops running jobs after their current tap and drops waiting jobs. poll() still returns the running jobs.
   virtual void cancel() = 0;
 
-  /// On a cluster, lets the scheduler execute `palpate` with these words once all accepted jobs have ended. Throws Error.
+  /// On a cluster, lets the scheduler execute `palpate` with these words once all accepted jobs have ended. Throws
+  /// Error.
   virtual void continue_with(const std::vector<std::string>&) {}
 
   /// Returns the shell command with which a user can end the jobs that outlive this process; "" if no job outlives it.

@@ -24,7 +24,7 @@ constexpr std::size_t kMostRows = 10;
 
 /// Returns the mean of a setting over its seeds in the race, as the metric has it. Missing values count as in the race.
 double mean_of_setting(const RaceResults& results, std::size_t setting) {
-  const double mean = mean_of(race_table(results.race, results.values.metric)[setting]);
+  const double mean = mean_of(results.table[setting]);
   return results.description.more_is_better ? -mean : mean;
 }
 
@@ -38,8 +38,7 @@ const Loser* loss_of(const RaceRecord& race, std::size_t setting) {
 /// Returns all settings: the winner, the others in the race by their means, then those that lost, the last one first.
 std::vector<std::size_t> listed_settings(const RaceResults& results) {
   const RaceRecord& race = results.race;
-  const RaceTable table = race_table(race, results.values.metric);
-  const std::vector<double> means = means_of(table);
+  const std::vector<double> means = means_of(results.table);
   std::vector<std::size_t> out(race.settings.size());
   std::iota(out.begin(), out.end(), std::size_t{0});
   const auto key = [&](std::size_t setting) {
@@ -47,15 +46,15 @@ std::vector<std::size_t> listed_settings(const RaceResults& results) {
     const bool races = std::count(race.state.racing.begin(), race.state.racing.end(), setting) > 0;
     // Settings with fewer seeds lost earlier.
     const std::size_t most = results.race.race_jobs;
-    return std::make_tuple(!wins, !races, races ? std::size_t{0} : most - table[setting].size(), means[setting]);
+    return std::make_tuple(!wins, !races, races ? std::size_t{0} : most - results.table[setting].size(),
+                           means[setting]);
   };
   std::stable_sort(out.begin(), out.end(), [&](std::size_t a, std::size_t b) { return key(a) < key(b); });
   return out;
 }
 
 bool is_best(const RaceResults& results, std::size_t setting) {
-  const std::vector<std::size_t> best = best_settings(results);
-  return std::count(best.begin(), best.end(), setting) > 0;
+  return std::count(results.best.begin(), results.best.end(), setting) > 0;
 }
 
 /// Returns "config as it stands", "best" or the reason why a setting lost; "" if there is nothing to remark.
@@ -64,9 +63,10 @@ std::string remark_about(const RaceResults& results, std::size_t setting, const 
   std::vector<std::string> out;
   if (setting == 0) out.emplace_back("config as it stands");
   if (is_best(results, setting)) out.emplace_back(results.description.cost ? "on the front" : "best");
+  // On a front, the difference may be one of the cost, which has another unit.
   if (const Loser* loss = loss_of(race, setting))
-    out.push_back(
-        fmt::format("lost after {} seeds: {} worse, p {:.2g}", loss->seeds, scale.quantity(loss->difference), loss->p));
+    out.push_back(fmt::format("lost after {} seeds: {}p {:.2g}", loss->seeds,
+                              results.description.cost ? "" : scale.quantity(loss->difference) + " worse, ", loss->p));
   return fmt::format("{}", fmt::join(out, ", "));
 }
 
@@ -91,12 +91,19 @@ std::string counted_settings(std::size_t count) {
   return fmt::format("{} setting{}", count, count == 1 ? " is" : "s are");
 }
 
+/// Returns the values, with the worst one in place of missing ones.
+std::vector<double> filled(const std::vector<std::optional<double>>& values) {
+  std::optional<double> worst;
+  for (const std::optional<double>& one : values) worst = std::max(worst, one);
+  std::vector<double> out;
+  for (const std::optional<double>& one : values) out.push_back(one.value_or(worst.value_or(0.0)));
+  return out;
+}
+
 /// Returns the mean of a field over the fresh seeds of a setting, with its interval.
-MeanEstimate fresh_mean(const RacedSetting& setting, const std::vector<std::optional<double>>& values, double sign) {
+MeanEstimate fresh_mean(const RacedSetting& setting, const std::vector<double>& values, double sign) {
   Clusters out;
-  for (const std::size_t job : setting.fresh) {
-    if (values[job]) out.push_back({sign * *values[job]});
-  }
+  for (const std::size_t job : setting.fresh) out.push_back({sign * values[job]});
   return out.empty() ? MeanEstimate{} : mean_of_sample(out);
 }
 
@@ -105,11 +112,12 @@ std::string front_text(const RaceResults& results) {
   const RaceRecord& race = results.race;
   std::vector<std::size_t> settings = race.front;
   if (std::count(settings.begin(), settings.end(), std::size_t{0}) == 0) settings.push_back(0);
+  const std::vector<double> metric = filled(results.values.metric);
+  const std::vector<double> cost = filled(results.values.cost);
   std::vector<std::vector<MeanEstimate>> means(2);
   for (const std::size_t one : settings) {
-    means[0].push_back(
-        fresh_mean(race.settings[one], results.values.metric, results.description.more_is_better ? -1 : 1));
-    means[1].push_back(fresh_mean(race.settings[one], results.values.cost, 1));
+    means[0].push_back(fresh_mean(race.settings[one], metric, results.description.more_is_better ? -1 : 1));
+    means[1].push_back(fresh_mean(race.settings[one], cost, 1));
   }
   Table table;
   for (std::size_t i = 0; i < settings.size(); ++i) {
@@ -133,38 +141,37 @@ std::string fresh_words(const RaceResults& results) {
     return fmt::format("{} on the front of {} and {}", counted_settings(results.race.front.size()),
                        results.description.metric, *results.description.cost);
   if (results.race.front.front() == 0) return "the config as it stands is the best setting";
-  const MeanEstimate gain = fresh_gain(results);
+  const MeanEstimate& gain = results.gain;
   if (gain.count == 0) return "no fresh seeds were run";
   const DisplayScale scale = scale_of(results);
   std::string words = fmt::format("gain over the config as it stands, on {} that had no part in the choice: {}",
                                   units_words(gain.clusters, true), scale.with_unit(scale.estimate(gain)));
-  if (best_settings(results).front() == 0)
+  if (results.best.front() == 0)
     words += "; the config as it stands is better and stays the best";
   else if (gain.interval && gain.interval->low <= 0.0)
     words += "; the interval contains 0, so the gain is not certain";
   return words;
 }
 
-/// Returns the metric of a job on a fresh seed. A missing value counts as the worst one of all runs.
-double fresh_value(const RaceResults& results, std::size_t job) {
-  if (results.values.metric[job]) return *results.values.metric[job];
-  std::optional<double> worst;
-  for (const std::optional<double>& one : results.values.metric) worst = std::max(worst, one);
-  return worst.value_or(0.0);
-}
-
 }  // namespace
 
-MeanEstimate fresh_gain(const RaceResults& results) {
-  const RaceRecord& race = results.race;
-  Clusters gains;
-  if (!race.has_ended() || results.description.cost) return {};
+RaceResults::RaceResults(const Sweep& race_sweep, const TuneDescription& tuned, const RaceRecord& record,
+                         const RaceValues& race_values)
+    : sweep(race_sweep),
+      description(tuned),
+      race(record),
+      values(race_values),
+      table(race_table(record, race_values.metric)),
+      best(record.front) {
+  if (!race.has_ended() || description.cost) return;
   const std::vector<std::size_t>& own = race.settings[0].fresh;
   const std::vector<std::size_t>& other = race.settings[race.front.front()].fresh;
-  for (std::size_t i = 0; i < std::min(own.size(), other.size()); ++i) {
-    gains.push_back({fresh_value(results, own[i]) - fresh_value(results, other[i])});
-  }
-  return gains.empty() ? MeanEstimate{} : mean_of_sample(gains);
+  const std::vector<double> metric = filled(values.metric);
+  Clusters gains;
+  for (std::size_t i = 0; i < std::min(own.size(), other.size()); ++i)
+    gains.push_back({metric[own[i]] - metric[other[i]]});
+  if (!gains.empty()) gain = mean_of_sample(gains);
+  if (gain.interval && gain.interval->high < 0.0) best = {0};
 }
 
 std::vector<Row> race_rows(const RaceResults& results) {
@@ -179,11 +186,12 @@ std::vector<Row> race_rows(const RaceResults& results) {
     row.add(results.description.metric, mean_of_setting(results, setting));
     const Loser* loss = loss_of(results.race, setting);
     row.add("lost_after_seeds", loss != nullptr ? std::optional(static_cast<std::int64_t>(loss->seeds)) : std::nullopt);
-    row.add("difference", loss != nullptr ? std::optional(loss->difference) : std::nullopt);
+    row.add("difference",
+            loss != nullptr && !results.description.cost ? std::optional(loss->difference) : std::nullopt);
     row.add("p", loss != nullptr ? std::optional(loss->p) : std::nullopt);
     row.add("is_best", is_best(results, setting));
     const std::vector<std::size_t>& front = results.race.front;
-    const MeanEstimate gain = !front.empty() && setting == front.front() ? fresh_gain(results) : MeanEstimate{};
+    const MeanEstimate gain = !front.empty() && setting == front.front() ? results.gain : MeanEstimate{};
     row.add("fresh_seeds", static_cast<std::int64_t>(gain.clusters));
     row.add("gain", gain.count > 0 ? std::optional(gain.mean) : std::nullopt);
     add_interval(row, "gain_", gain.interval);
@@ -220,18 +228,11 @@ std::string race_text(const RaceResults& results) {
   }
   std::string out = table.text();
   if (listed.size() > kMostRows) out += fmt::format("{} settings in all: race.csv\n", listed.size());
-  if (!race.has_ended())
-    return out + fmt::format("{} runs so far, {} settings are in the race\n", race.race_jobs, race.state.racing.size());
   out += fmt::format("{} runs; the race ended because {}\n", race.race_jobs, race.end);
   const auto missing = std::count(results.values.metric.begin(), results.values.metric.end(), std::nullopt);
   if (missing > 0) out += fmt::format("{} runs failed or have no value; they count as the worst result\n", missing);
   if (results.description.cost) out += front_text(results);
   return out + fresh_words(results) + "\n";
-}
-
-std::vector<std::size_t> best_settings(const RaceResults& results) {
-  const MeanEstimate gain = fresh_gain(results);
-  return gain.interval && gain.interval->high < 0.0 ? std::vector<std::size_t>{0} : results.race.front;
 }
 
 std::string config_of_setting(const RaceResults& results, std::size_t setting) {

@@ -12,24 +12,34 @@
 
 namespace palpate {
 
-/// A race and the results of all its jobs (read_results()).
+/// A race that has ended or goes on, and its results. All arguments of the constructor must outlive the object.
 struct RaceResults {
+  /// `race_values`: the results of all jobs (read_results()).
+  RaceResults(const Sweep& race_sweep, const TuneDescription& tuned, const RaceRecord& record,
+              const RaceValues& race_values);
+
   const Sweep& sweep;
   const TuneDescription& description;
   const RaceRecord& race;
   const RaceValues& values;
+  RaceTable table;  ///< race_table() of the metric
+  /// Gain of the winner compared with the config as it stands: the mean difference over the fresh seeds, above 0 if the
+  /// winner is better. A missing value counts as the worst one of all runs. MeanEstimate::count is 0 on a front, and
+  /// without fresh seeds.
+  MeanEstimate gain;
+  /// The settings whose configs are written: the settings on the front, or the winner. In place of a winner that is
+  /// worse on the fresh seeds (95 % interval of the gain below 0), the config as it stands. Empty while the race goes
+  /// on.
+  std::vector<std::size_t> best;
 };
-
-/// Returns the gain of the winner compared with the config as it stands: the mean difference over the fresh seeds on
-/// which both have a value, above 0 if the winner is better. Without values, and on a front, MeanEstimate::count is 0.
-MeanEstimate fresh_gain(const RaceResults& results);
 
 /// Returns one row per setting: number, values of the tuned keys, number of seeds, mean, and for a dropped setting the
 /// number of seeds after which it lost, its difference to the best one, and p. The row of the winner has the gain on
 /// fresh seeds. In SI units.
 std::vector<Row> race_rows(const RaceResults& results);
 
-/// Returns the best settings in readable units, the config as it stands, the reason of the end, and the gain.
+/// Returns the best settings of a race that has ended in readable units, the config as it stands, the reason of the
+/// end, and the gain.
 std::string race_text(const RaceResults& results);
 
 /// Texts for the page of a race.
@@ -44,10 +54,6 @@ struct RaceOfPage {
   std::string end;  ///< reason of the end and gain; "" if the race goes on
 };
 RaceOfPage race_of_page(const RaceResults& results);
-
-/// Returns the settings whose configs are written: the settings on the front, or the winner. In place of a winner that
-/// is worse on the fresh seeds (95 % interval of the gain below 0), returns the config as it stands.
-std::vector<std::size_t> best_settings(const RaceResults& results);
 
 /// Returns the config of a setting as YAML, with the course of the race as a comment.
 std::string config_of_setting(const RaceResults& results, std::size_t setting);

@@ -22,7 +22,7 @@ std::string refusal(std::vector<std::string> words, const std::vector<std::strin
 
 TEST(SlurmOptions, AreRefusedForThisMachine) {
   const std::vector<std::string> sweep{"sweep", paper(), "seed=1,2"};
-  const std::vector<std::vector<std::string>> all{{"--partition", "x"},  {"--task-time", "5"},          {"--account", "x"},
+  const std::vector<std::vector<std::string>> all{{"--partition", "x"},  {"--task-time", "5"},     {"--account", "x"},
                                                   {"--sbatch=--mem=4G"}, {"--jobs-per-task", "1"}, {"--wait"}};
   for (const std::vector<std::string>& option : all) {
     const std::string name = option.front().substr(0, option.front().find('='));

@@ -153,6 +153,7 @@ TEST_F(Tune, KeepsTheFrontOfErrorAndCostAndWritesItsConfigs) {
   const test::Ended ended = palpate(words);
   ASSERT_EQ(ended.status, 0) << ended.err;
   EXPECT_THAT(ended.out, AllOf(HasSubstr("on the front of rmse_m and robot_seconds"), HasSubstr("on fresh seeds")));
+  EXPECT_THAT(ended.out, Not(HasSubstr(" worse"))) << "of which of the two metrics?";
   EXPECT_TRUE(fs::exists(directory() / "front_1.yaml"));
   EXPECT_TRUE(fs::exists(directory() / "front_2.yaml")) << "more taps give a smaller error";
   EXPECT_FALSE(fs::exists(directory() / "best.yaml"));
@@ -177,7 +178,7 @@ TEST_F(Tune, StopsIfTheGroupsOfTheConfigWereChangedSinceItBegan) {
   ASSERT_EQ(first.status, 0) << first.err;
   const fs::path manifest = directory() / "manifest.jsonl";
   const std::string whole = text_of(manifest);
-  write(manifest, whole.substr(0, whole.find("\n", whole.find("{\"round\"")) + 1));  // after the first round
+  write(manifest, whole.substr(0, whole.find('\n', whole.find("{\"round\"")) + 1));  // after the first round
   write("configs/kernel/own.yaml", "kernel: {type: rbf, length_scale: 3 cm}\n");
   const test::Ended ended = resume(directory());
   EXPECT_NE(ended.status, 0);
