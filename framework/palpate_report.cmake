@@ -7,6 +7,7 @@ add_library(palpate_report STATIC
   analysis/gnuplot.cpp analysis/importance.cpp
   tune/description.cpp tune/search_space.cpp tune/elimination.cpp tune/race.cpp tune/planner.cpp tune/tuner.cpp
   tune/race_report.cpp
+  bundle/archive.cpp bundle/bundle.cpp bundle/repeat.cpp
   calibrate/contact_fit.cpp calibrate/simulated_rerun.cpp calibrate/calibrate.cpp
   report/contours.cpp report/history.cpp report/curves.cpp report/colours.cpp
   report/page/assets.S report/page/page.cpp
@@ -18,7 +19,7 @@ add_library(palpate_report STATIC
   report/mesh_export.cpp
   watch/growing_log.cpp watch/run_follower.cpp watch/sweep_follower.cpp watch/site.cpp watch/server.cpp)
 target_include_directories(palpate_report PUBLIC ${CMAKE_CURRENT_SOURCE_DIR})
-target_link_libraries(palpate_report PUBLIC palpate_sweep PRIVATE palpate_warnings Boost::headers Threads::Threads ${ZLIB} nlohmann_json::nlohmann_json)
+target_link_libraries(palpate_report PUBLIC palpate_sweep PRIVATE palpate_warnings Boost::headers Threads::Threads ${ZLIB} PkgConfig::NETTLE nlohmann_json::nlohmann_json)
 target_precompile_headers(palpate_report REUSE_FROM palpate_sweep)
 target_compile_options(palpate_report PRIVATE ${quick_to_build})
 # Resampling takes most of the time of an interval.

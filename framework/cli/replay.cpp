@@ -21,7 +21,7 @@ int replay(CommandEnvironment& program, const ReplayArguments& arguments) {
   const std::string& directory = arguments.directory;
   constexpr std::size_t kShown = 10;
   check_one_run(directory);
-  const ReplayReport report = replay_run(program, directory);
+  const ReplayReport report = replay_run(program, read_recorded_run(program.host, directory));
   if (report.truth_lost)
     print_message(fmt::format("numbers that need the truth are not compared: {}\n", report.truth_lost->what()));
   if (report.differences.empty()) {

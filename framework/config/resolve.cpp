@@ -114,6 +114,7 @@ class Resolver final : public MapReader {
       if (!tree->is_scalar()) refuse(*tree, field, "expects a text, not " + shown(*tree), "write a word or two");
       value = field.is_file ? found_from(tree->place, tree->text) : tree->text;
     }
+    if (field.is_file) notes_.files.push_back(name(field));
     write(field, Tree::scalar(value, true), sized(value));
   }
 

@@ -169,6 +169,20 @@ void write_file(const fs::path& file, const std::string& text, bool sync) {
   temporary.publish(sync);
 }
 
+TemporaryFolder::TemporaryFolder() {
+  std::error_code none;
+  std::string name = (fs::temp_directory_path(none) / "palpate-XXXXXX").string();
+  if (::mkdtemp(name.data()) == nullptr)
+    throw Error(name, std::string("cannot be made: ") + std::strerror(errno), "set TMPDIR to another folder",
+                Error::Kind::run);
+  path_ = name;
+}
+
+TemporaryFolder::~TemporaryFolder() {
+  std::error_code none;
+  fs::remove_all(path_, none);
+}
+
 void remove_temporaries(const fs::path& folder) {
   std::error_code none;
   for (const fs::path& file : list_folder(folder)) {

@@ -44,6 +44,21 @@ class TemporaryFile {
   FileDescriptor descriptor_;
 };
 
+/// A new folder of this user among the temporary files of the system (TMPDIR). The destructor removes it.
+class TemporaryFolder {
+ public:
+  /// Throws Error.
+  TemporaryFolder();
+  ~TemporaryFolder();
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
 /// Removes those temporary files in `folder` that no process has locked, because the processes that wrote them were
 /// killed.
 void remove_temporaries(const std::filesystem::path& folder);

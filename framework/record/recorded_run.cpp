@@ -89,7 +89,10 @@ ResolvedConfig load_run(const PluginHost& host, const fs::path& directory) {
 }
 
 RecordedRun read_recorded_run(const PluginHost& host, const fs::path& directory) {
-  ResolvedConfig config = load_run(host, directory);
+  return read_recorded_run(load_run(host, directory), directory);
+}
+
+RecordedRun read_recorded_run(ResolvedConfig config, const fs::path& directory) {
   RunRecord record = read_run_record(directory);
   if (record.taps.empty()) throw Error(directory.string(), "has no recorded tap", {}, Error::Kind::run);
   RecordedRun out{directory, std::move(config),         std::move(record.taps),

@@ -63,5 +63,7 @@ struct RecordedRun {
 /// Returns the run in `directory`. Throws Error if it has no recorded tap, is damaged, or has a config that does not
 /// match its id.
 RecordedRun read_recorded_run(const PluginHost& host, const std::filesystem::path& directory);
+/// Returns the run in `directory`, whose config is `config`.
+RecordedRun read_recorded_run(ResolvedConfig config, const std::filesystem::path& directory);
 
 }  // namespace palpate

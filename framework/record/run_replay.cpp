@@ -191,8 +191,7 @@ RunResult RunReplay::result() {
   return out;
 }
 
-ReplayReport replay_run(const RunEnvironment& environment, const fs::path& directory) {
-  const RecordedRun run = read_recorded_run(environment.host, directory);
+ReplayReport replay_run(const RunEnvironment& environment, const RecordedRun& run) {
   const auto made = static_cast<int>(run.rows.size());
   RunReplay replay(environment, run);
   Experiment& experiment = replay.experiment();

@@ -87,7 +87,7 @@ struct ReplayReport {
 
 /// Replays a run: chooses each recorded tap again with the same models, and compares all numbers bit for bit, as text.
 /// Times, memory and host are not compared.
-ReplayReport replay_run(const RunEnvironment& environment, const std::filesystem::path& directory);
+ReplayReport replay_run(const RunEnvironment& environment, const RecordedRun& run);
 
 /// Returns the summaries that a successful run would have had after each of its taps except the last. In all fields
 /// that depend only on the config, each summary equals that of a run whose budget is this number of taps, because

@@ -96,7 +96,7 @@ void record(const std::string& bytes) {
   const Changed changed(run / name, content);
   attempt([&] { read_status(run); });
   attempt([&] { objection_to_build(environment(), load_run(host(), run), read_run_record(run)); });
-  attempt([&] { replay_run(environment(), run); });
+  attempt([&] { replay_run(environment(), read_recorded_run(host(), run)); });
 }
 
 void plan(const std::string& bytes) {

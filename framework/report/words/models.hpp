@@ -2,6 +2,7 @@
 // Texts about the models at the time when a recorded tap was chosen.
 #pragma once
 
+#include "belief/height_map_options.hpp"
 #include "experiment/experiment_options.hpp"
 #include "report/words/words.hpp"
 

@@ -1,0 +1,283 @@
+// SPDX-License-Identifier: MIT
+#include "bundle/archive.hpp"
+
+#include "record/files.hpp"
+
+#include <palpate/error.hpp>
+
+#include <boost/algorithm/string/case_conv.hpp>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+#include <locale>
+#include <new>
+#include <optional>
+
+#include <nettle/sha2.h>
+#include <zlib.h>
+
+namespace palpate {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr std::size_t kBlock = 512;             ///< size of a header; contents are padded to a multiple of it
+constexpr std::size_t kShortName = 100;         ///< longer names are split at a '/' into `prefix` and `name`
+constexpr std::size_t kLongestName = 200;       ///< without the folder of the bundle
+constexpr std::size_t kLongestPrefix = 155;
+constexpr std::ptrdiff_t kMostLevels = 12;
+constexpr std::size_t kMostFiles = 400'000;
+constexpr std::uintmax_t kMostContent = std::uintmax_t{512} << 20;
+/// Records are compressed about 14 : 1. A larger ratio than this, after the first bytes, is no archive of records.
+constexpr std::uintmax_t kMostRatio = 60;
+constexpr std::uintmax_t kLeastRatio = 4;  ///< larger archives than this allows are not read
+constexpr std::uintmax_t kFreeBytes = std::uintmax_t{16} << 20;
+constexpr int kGzipWindow = 15 + 16;  ///< for zlib: the largest window, and the header of gzip
+constexpr std::size_t kChunk = std::size_t{1} << 16;
+
+Error refused(const std::string& file, const std::string& reason, const std::string& remedy = {}) {
+  return {file, reason, remedy.empty() ? "make it again with 'palpate bundle', or ask its author for it" : remedy};
+}
+
+/// Returns the ustar header of a regular file. Throws Error for a name that has no place in it.
+std::string header_of(const std::string& path, std::uintmax_t size, const std::string& file) {
+  std::string name = path;
+  std::string prefix;
+  if (path.size() > kShortName) {
+    const std::size_t cut = path.find('/', path.size() - kShortName - 1);
+    if (cut == std::string::npos || cut > kLongestPrefix) throw refused(file, "the name '" + path + "' is too long");
+    prefix = path.substr(0, cut);
+    name = path.substr(cut + 1);
+  }
+  std::string out(kBlock, '\0');
+  const auto put = [&](std::size_t at, const std::string& text) { out.replace(at, text.size(), text); };
+  put(0, name);
+  put(100, "0000644");
+  put(108, "0000000");
+  put(116, "0000000");
+  put(124, fmt::format("{:011o}", size));
+  put(136, "00000000000");
+  put(148, "        ");
+  put(156, "0");
+  put(257, "ustar");
+  put(263, "00");
+  put(329, "0000000");
+  put(337, "0000000");
+  put(345, prefix);
+  unsigned sum = 0;
+  for (const char c : out) sum += static_cast<unsigned char>(c);
+  put(148, fmt::format("{:06o}", sum));
+  out[154] = '\0';
+  return out;
+}
+
+std::string padding_of(std::uintmax_t size) { return std::string((kBlock - size % kBlock) % kBlock, '\0'); }
+
+/// Compresses into a file.
+class GzipWriter {
+ public:
+  explicit GzipWriter(const fs::path& file) : out_(file) {
+    constexpr int kMemory = 9;
+    if (deflateInit2(&stream_, Z_BEST_COMPRESSION, Z_DEFLATED, kGzipWindow, kMemory, Z_DEFAULT_STRATEGY) != Z_OK)
+      throw std::bad_alloc();
+    header_.os = 255;  // unknown: the bytes do not depend on the machine
+    deflateSetHeader(&stream_, &header_);
+  }
+  ~GzipWriter() { deflateEnd(&stream_); }
+  GzipWriter(const GzipWriter&) = delete;
+  GzipWriter& operator=(const GzipWriter&) = delete;
+
+  void write(std::string_view bytes) { deflate_all(bytes, Z_NO_FLUSH); }
+  void publish() {
+    deflate_all({}, Z_FINISH);
+    out_.publish();
+  }
+
+ private:
+  void deflate_all(std::string_view bytes, int flush) {
+    std::array<char, kChunk> chunk;
+    stream_.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data()));
+    stream_.avail_in = static_cast<uInt>(bytes.size());
+    do {
+      stream_.next_out = reinterpret_cast<Bytef*>(chunk.data());
+      stream_.avail_out = chunk.size();
+      deflate(&stream_, flush);
+      out_.write({chunk.data(), chunk.size() - stream_.avail_out});
+    } while (stream_.avail_out == 0);
+  }
+
+  TemporaryFile out_;
+  z_stream stream_{};
+  gz_header header_{};
+};
+
+/// Decompresses a file, which is read as a whole.
+class GzipReader {
+ public:
+  GzipReader(const fs::path& file, std::uintmax_t most_bytes) : name_(file.string()) {
+    FileReading reading = read_bounded(file, most_bytes, FileOrigin::user);
+    if (!reading) throw refused(name_, words_of(reading, most_bytes).reason, "name a bundle: NAME.palpate.tar.gz");
+    bytes_ = std::move(reading.text);
+    if (inflateInit2(&stream_, kGzipWindow) != Z_OK) throw std::bad_alloc();
+    stream_.next_in = reinterpret_cast<Bytef*>(bytes_.data());
+    stream_.avail_in = static_cast<uInt>(bytes_.size());
+  }
+  ~GzipReader() { inflateEnd(&stream_); }
+  GzipReader(const GzipReader&) = delete;
+  GzipReader& operator=(const GzipReader&) = delete;
+
+  /// Returns the next `bytes` bytes. Throws Error if there are fewer.
+  std::string read(std::uintmax_t bytes) {
+    std::string out;
+    out.reserve(bytes);  // The size comes from the file; memory is used only as far as the bytes exist.
+    std::array<char, kChunk> chunk;
+    while (out.size() < bytes) {
+      const std::size_t got = read_some(chunk.data(), std::min<std::uintmax_t>(bytes - out.size(), kChunk));
+      if (got == 0) throw refused(name_, "ends too early");
+      out.append(chunk.data(), got);
+    }
+    return out;
+  }
+
+  /// Returns whether nothing follows, neither in the compressed data nor behind them.
+  bool at_end() {
+    char one = 0;
+    return read_some(&one, 1) == 0 && stream_.avail_in == 0;
+  }
+
+ private:
+  std::size_t read_some(char* to, std::size_t bytes) {
+    stream_.next_out = reinterpret_cast<Bytef*>(to);
+    stream_.avail_out = static_cast<uInt>(bytes);
+    while (stream_.avail_out == bytes && !ended_) {
+      const int status = inflate(&stream_, Z_NO_FLUSH);
+      ended_ = status == Z_STREAM_END;
+      if (!ended_ && status != Z_OK) throw refused(name_, "is not an archive of gzip, or is damaged");
+      if (stream_.total_out > kFreeBytes && stream_.total_out / kMostRatio > stream_.total_in)
+        throw refused(name_, fmt::format("is compressed by more than {} : 1, so it holds no records", kMostRatio));
+    }
+    return bytes - stream_.avail_out;
+  }
+
+  std::string name_;
+  std::string bytes_;
+  z_stream stream_{};
+  bool ended_ = false;
+};
+
+/// Returns the text in a field of a header, which ends at its first zero.
+std::string field_of(const std::string& header, std::size_t at, std::size_t length) {
+  const std::string field = header.substr(at, length);
+  return field.substr(0, field.find('\0'));
+}
+
+/// The names of the files and folders so far, to find those that some file system cannot have together.
+class KnownNames {
+ public:
+  void add(const std::string& name, const std::string& file) {
+    if (name <= last_) throw refused(file, fmt::format("its files are not sorted: '{}' follows '{}'", name, last_));
+    last_ = name;
+    for (std::size_t slash = name.find('/'); slash != std::string::npos; slash = name.find('/', slash + 1))
+      add_part(name.substr(0, slash), true, file);
+    add_part(name, false, file);
+  }
+
+ private:
+  struct Part {
+    std::string spelling;
+    bool is_folder;
+  };
+  void add_part(const std::string& name, bool is_folder, const std::string& file) {
+    const auto [at, is_new] = parts_.emplace(boost::to_lower_copy(name, std::locale::classic()), Part{name, is_folder});
+    const Part& known = at->second;
+    if (!is_new && (known.spelling != name || !known.is_folder || !is_folder))
+      throw refused(file, fmt::format("'{}' and '{}' exclude each other", known.spelling, name));
+  }
+
+  std::string last_;
+  std::map<std::string, Part> parts_;
+};
+
+}  // namespace
+
+std::string sha256_of(std::string_view bytes) {
+  sha256_ctx context;
+  sha256_init(&context);
+  sha256_update(&context, bytes.size(), reinterpret_cast<const std::uint8_t*>(bytes.data()));
+  std::array<std::uint8_t, SHA256_DIGEST_SIZE> digest;
+  sha256_digest(&context, digest.size(), digest.data());
+  std::string out;
+  for (const std::uint8_t byte : digest) out += fmt::format("{:02x}", byte);
+  return out;
+}
+
+void check_archived_name(const std::string& name, const std::string& file) {
+  constexpr std::string_view kPlain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789._~-";
+  const auto refuse = [&](const std::string& reason) {
+    return refused(file, fmt::format("the name '{}' {}", name, reason));
+  };
+  if (name.size() > kLongestName) throw refuse(fmt::format("has more than {} bytes", kLongestName));
+  if (std::count(name.begin(), name.end(), '/') >= kMostLevels) throw refuse("has too many levels");
+  std::size_t begin = 0;
+  while (begin <= name.size()) {
+    const std::size_t end = std::min(name.find('/', begin), name.size());
+    const std::string_view level = std::string_view(name).substr(begin, end - begin);
+    if (level.empty() || level == "." || level == ".." || level.find_first_not_of(kPlain) != std::string_view::npos)
+      throw refuse("has an empty or strange part");
+    begin = end + 1;
+  }
+}
+
+void write_archive(const fs::path& file, const std::string& folder, const ArchivedFiles& files) {
+  KnownNames known;
+  GzipWriter out(file);
+  for (const auto& [name, content] : files) {
+    check_archived_name(name, file.string());
+    known.add(name, file.string());
+    out.write(header_of(folder + "/" + name, content.size(), file.string()));
+    out.write(content);
+    out.write(padding_of(content.size()));
+  }
+  out.write(std::string(2 * kBlock, '\0'));
+  out.publish();
+}
+
+void read_archive(const fs::path& file, std::uintmax_t most_bytes,
+                  const std::function<void(const std::string& name, const std::string& content)>& use) {
+  const std::string place = file.string();
+  GzipReader in(file, most_bytes / kLeastRatio);
+  KnownNames known;
+  std::optional<std::string> folder;
+  std::uintmax_t bytes = 0;
+  for (std::size_t count = 1;; ++count) {
+    const std::string header = in.read(kBlock);
+    if (header == std::string(kBlock, '\0')) break;
+    const std::string prefix = field_of(header, 345, kLongestPrefix);
+    const std::string path = (prefix.empty() ? "" : prefix + "/") + field_of(header, 0, kShortName);
+    const std::uintmax_t size = std::strtoull(field_of(header, 124, 12).c_str(), nullptr, 8);
+    const std::size_t slash = path.find('/');
+    if (slash == std::string::npos || header != header_of(path, size, place))
+      throw refused(place, fmt::format("its entry {} is not a plain file as 'palpate bundle' writes it", count));
+    const std::string name = path.substr(slash + 1);
+    if (!folder) check_archived_name(folder.emplace(path.substr(0, slash)), place);
+    if (path.compare(0, slash, *folder) != 0 || slash != folder->size())
+      throw refused(place, "has files outside of its folder " + *folder);
+    check_archived_name(name, place);
+    known.add(name, place);
+    bytes += size;
+    if (count > kMostFiles) throw refused(place, fmt::format("has more than {} files", kMostFiles));
+    if (size > kMostContent) throw refused(place, fmt::format("'{}' has more than {} bytes", name, kMostContent));
+    if (bytes > most_bytes)
+      throw refused(place, fmt::format("unpacks to more than {} bytes", most_bytes),
+                    "if you trust its author, allow more with --max-size");
+    const std::string content = in.read(size);
+    if (in.read(padding_of(size).size()) != padding_of(size)) throw refused(place, "has data between its files");
+    use(name, content);
+  }
+  if (in.read(kBlock) != std::string(kBlock, '\0') || !in.at_end()) throw refused(place, "has data behind its last file");
+}
+
+}  // namespace palpate

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: MIT
+// A bundle: one archive with the records, files, sources and results behind a claim, so that others can repeat it.
+//
+// | file | content |
+// |---|---|
+// | README.md | one page for the reader |
+// | SHA256SUMS | hashes of all other files, for `sha256sum -c` |
+// | bundle.json | the list of records, and the command of each result |
+// | records/NAME/ID/ | config.yaml and record.jsonl of a run |
+// | sweeps/NAME/ID/ | config.yaml and manifest.jsonl of a sweep; in jobs/ID/ the files of its runs |
+// | files/HASH.EXT | a file that configs name, such as a mesh |
+// | sources/NAME/ | sources of plugins and programs that palpate does not contain |
+// | results/N/ | output of the command number N, from 1 |
+//
+// Paths and names of the machine stay out. Values that change no result of a run are left out: `log`, `expect` and the
+// number of threads. All tables that follow from the records are left out, too.
+#pragma once
+
+#include "bundle/archive.hpp"
+#include "record/files.hpp"
+#include "record/resolved_config.hpp"
+#include "record/run.hpp"
+#include "sweep/sweep.hpp"
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace palpate {
+
+inline constexpr const char* kSumsFile = "SHA256SUMS";
+
+/// Words of a command after `palpate`, without the records.
+using CommandWords = std::vector<std::string>;
+/// Returns the words as one text, with quotes around words that contain blanks.
+std::string words_text(const CommandWords& words);
+
+/// Content of bundle.json.
+struct BundleIndex {
+  std::string name;
+  std::vector<std::string> records;  ///< folders of runs and sweeps, sorted
+  std::vector<CommandWords> results;
+  std::string version;  ///< version and commit of the program that made the first run
+  std::string commit;
+};
+
+std::string index_text(const BundleIndex& index);
+/// Reads bundle.json in `folder`. Throws Error.
+BundleIndex read_index(const std::filesystem::path& folder);
+/// Sets version and commit from the text of the record `file`: the first record of the bundle.
+void set_version(BundleIndex& index, const std::string& record, const std::filesystem::path& file);
+std::string readme_text(const BundleIndex& index);
+
+/// Returns the text of SHA256SUMS from the hashes of all other files.
+std::string sums_text(const std::map<std::string, std::string>& hashes);
+
+/// Removes paths, names and numbers of the machine and its processes from a line `manifest` or `attempt` of a record.
+void make_portable(Tree& line);
+/// Returns a record.jsonl without paths, names and numbers of the machine and its processes.
+std::string portable_record(const std::string& text, const std::filesystem::path& file);
+
+/// Returns the config of a run as text, without values that change no result. `replaced`: texts of values by their
+/// dotted paths. `origins`: source locations of the values by their paths (recorded_origins()); of their files, only
+/// the name remains, for a group with its folder.
+std::string portable_config(Tree config, const std::map<std::string, std::string>& origins,
+                            const std::map<std::string, std::string>& replaced = {});
+/// Returns config.yaml of a sweep likewise.
+std::string portable_sweep_config(Tree config);
+
+/// Collects the files of a bundle.
+class BundleCollector {
+ public:
+  /// `sources`: folders with the sources of plugins and programs. Throws Error for a folder that cannot be read, and for
+  /// two folders with the same name. Hidden files, build folders and links are left out.
+  BundleCollector(const RunEnvironment& environment, const std::vector<std::filesystem::path>& sources);
+
+  /// Adds a run or a sweep. Throws Error for a run that is running or has no record, for a missing or changed file, and
+  /// for a plugin or program whose sources are not given.
+  void add(const std::filesystem::path& directory);
+  void add_file(const std::string& name, std::string content) { files_[name] = std::move(content); }
+
+  /// Returns all files of the bundle. The name and the results of `index` must be set.
+  ArchivedFiles finish(BundleIndex index);
+
+ private:
+  void add_run(const std::filesystem::path& directory, const std::string& prefix);
+  void add_sweep(const Sweep& sweep);
+  void add_source(const std::filesystem::path& folder, const std::string& prefix);
+  /// Adds a file that a config names, and returns its name in the bundle.
+  std::string add_named_file(const std::string& file, const Tree& config, const std::string& path);
+  /// Returns the folder of a program within the sources, as an absolute path below the bundle: "/sources/NAME".
+  std::string folder_in_sources(const Tree& folder) const;
+
+  const RunEnvironment& environment_;
+  std::map<std::filesystem::path, std::string> sources_;  ///< names of the folders in the bundle
+  std::map<std::string, std::string> named_files_;        ///< names in the bundle, by paths on this machine
+  std::vector<std::string> records_;
+  ArchivedFiles files_;
+};
+
+/// A bundle that was unpacked into a temporary folder.
+class UnpackedBundle {
+ public:
+  /// Throws Error for an archive that read_archive() rejects.
+  UnpackedBundle(const std::filesystem::path& file, std::uintmax_t most_bytes);
+
+  const std::filesystem::path& folder() const { return folder_.path(); }
+  /// Names and hashes of all files except SHA256SUMS.
+  const std::map<std::string, std::string>& hashes() const { return hashes_; }
+  /// Hash of SHA256SUMS, which a paper can print: 64 hex digits.
+  const std::string& digest() const { return digest_; }
+
+  /// Returns one line for each file whose content differs from SHA256SUMS, that it lacks, or that is missing.
+  std::vector<std::string> wrong_sums() const;
+
+ private:
+  TemporaryFolder folder_;
+  std::map<std::string, std::string> hashes_;
+  std::string sums_;
+  std::string digest_;
+};
+
+}  // namespace palpate

@@ -1,0 +1,293 @@
+// SPDX-License-Identifier: MIT
+#include "bundle/repeat.hpp"
+
+#include "config/catch_error.hpp"
+#include "config/yaml.hpp"
+#include "record/fields.hpp"
+#include "record/files.hpp"
+#include "record/record_reader.hpp"
+#include "record/recorded_run.hpp"
+#include "record/run_replay.hpp"
+
+#include <palpate/error.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+namespace palpate {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// Absolute difference below which two numbers are equal for two builds.
+constexpr double kSmallNumber = 1e-12;
+/// Fields of taps that are equal on all builds.
+const std::set<std::string> kExactFields{"source", "outcome", "on_object", "x",  "y",  "z",
+                                         "height", "dx",      "dy",        "dz", "id", "taps"};
+
+std::string shown(const Scalar* value) {
+  if (value == nullptr) return "nothing";
+  return std::holds_alternative<std::monostate>(*value) ? "null" : csv_cell(*value);
+}
+
+/// Returns the number that the whole text is; nullopt if it is none.
+std::optional<double> number_of(const std::string& text) {
+  double out = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), out);
+  return error == std::errc() && end == text.data() + text.size() ? std::optional(out) : std::nullopt;
+}
+
+/// Returns whether two values of a field count as different: see compare_rows().
+bool differ(const std::string& field, const std::string& recorded, const std::string& now, bool exact) {
+  if (recorded == now || depends_on_machine(field)) return false;
+  const auto a = number_of(recorded);
+  const auto b = number_of(now);
+  return exact || kExactFields.count(field) > 0 || !a || !b ||
+         std::abs(*a - *b) > kNumberTolerance * std::max(std::abs(*a), std::abs(*b)) + kSmallNumber;
+}
+
+/// Returns the manifest as a row, without what may differ between two equal runs. With `build`, what describes the
+/// build remains.
+Row manifest_row(const Tree& manifest, bool build) {
+  static const std::set<std::string> kOfRun{"manifest", "name", "id", "identity", "dropped"};
+  static const std::set<std::string> kOfProcess{"at"};
+  Row out;
+  for (const Tree::Entry& one : manifest.entries) {
+    if (build ? kOfProcess.count(one.key) == 0 : kOfRun.count(one.key) > 0)
+      out.add("manifest." + one.key, one.value.canonical());
+  }
+  return out;
+}
+
+bool is_of_process(const std::string& field) { return field == "at" || field == "host" || field == "pid"; }
+
+/// Compares two lists of rows of one kind.
+void compare_lists(const std::vector<Row>& recorded, const std::vector<Row>& now, const std::string& kind, bool exact,
+                   std::vector<std::string>& differences) {
+  if (recorded.size() != now.size())
+    differences.push_back(fmt::format("{} lines `{}`, now {}", recorded.size(), kind, now.size()));
+  for (std::size_t i = 0; i < std::min(recorded.size(), now.size()); ++i)
+    compare_rows(recorded[i], now[i], fmt::format("{} {}", kind, i + 1), exact, differences);
+}
+
+/// Compares the record of a run with that of its repetition.
+void compare_records(const RunRecord& recorded, const RunRecord& now, std::vector<std::string>& differences) {
+  const bool exact = recorded.build() == now.build();
+  if (recorded.manifest && now.manifest)
+    compare_rows(manifest_row(*recorded.manifest, exact), manifest_row(*now.manifest, exact), "line 1", true,
+                 differences);
+  const bool has_ended = recorded.end && recorded.end->how != Ending::EndKind::interrupted;
+  std::vector<Row> taps = now.taps;
+  if (!has_ended) taps.resize(std::min(taps.size(), recorded.taps.size()));
+  compare_lists(recorded.taps, taps, "tap", exact, differences);
+  // Each attempt that was killed may have lost the times of one tap.
+  if (recorded.timings.size() + std::max<std::size_t>(recorded.attempts.size(), 1) < recorded.taps.size() + 1)
+    differences.push_back(fmt::format("{} taps, but the times of {}", recorded.taps.size(), recorded.timings.size()));
+  if (recorded.attempts.size() == 1 && now.attempts.size() == 1) {
+    std::vector<std::vector<Row>> attempts{recorded.attempts, now.attempts};
+    for (std::vector<Row>& rows : attempts) {
+      auto& fields = rows.front().fields;
+      fields.erase(std::remove_if(fields.begin(), fields.end(),
+                                  [&](const auto& one) { return is_of_process(one.first) || (!exact && one.first == "build"); }),
+                   fields.end());
+    }
+    compare_lists(attempts[0], attempts[1], "attempt", exact, differences);
+  }
+  const auto canonical = [](const std::optional<Tree>& tree) { return tree ? tree->canonical() : ""; };
+  if (canonical(recorded.setup) != canonical(now.setup)) differences.emplace_back("the line `setup` differs");
+  if (!has_ended) return;
+  compare_lists(recorded.objects, now.objects, "object", exact, differences);
+  if (!now.end) {
+    differences.emplace_back("the repeated run did not end");
+    return;
+  }
+  if (recorded.end->how != now.end->how || recorded.end->reason != now.end->reason)
+    differences.push_back(fmt::format("end: recorded {}: {}, now {}: {}", ending_name(recorded.end->how),
+                                      recorded.end->reason, ending_name(now.end->how), now.end->reason));
+  compare_rows(recorded.end->summary, now.end->summary, "summary", exact, differences);
+}
+
+/// Replaces the backend by the simulator, because a replay does not need the backend, and its plugin may be missing on
+/// this machine.
+void replace_backend(Tree& config) {
+  Tree simulator = Tree::map({{"type", Tree::scalar("simulator")}});
+  simulator.set_layer(kCommandLineLayer);
+  config.at("backend") = simulator;
+  config.erase("motion");
+}
+
+/// Returns the config of the run in `directory`. `bundle`: folder of the bundle, in which the programs are. Throws Error
+/// if the config does not fit the identity in the record, which is not checked without the backend.
+ResolvedConfig config_of(const PluginHost& host, const fs::path& bundle, const fs::path& directory, bool has_backend) {
+  Tree tree = read_run_config(directory);
+  for_all(tree, [&](Tree& one) {
+    Tree* folder = one.is_map() && one.find("command") != nullptr ? one.find("folder") : nullptr;
+    if (folder != nullptr) folder->text = bundle.string() + folder->text;
+  });
+  if (!has_backend) replace_backend(tree);
+  ResolvedConfig out = resolve_experiment(tree, host);
+  const std::string identity = read_identity(directory).identity;
+  if (has_backend && (identity != out.identity || directory.filename() != out.id))
+    throw Error("config.yaml", fmt::format("has the id {}, the record has {}", out.id, identity.substr(0, kIdLength)));
+  out.identity = identity;
+  out.id = identity.substr(0, kIdLength);
+  return out;
+}
+
+/// Returns the first plugin of the manifest that this installation lacks: "kernel/own"; "" if there is none.
+std::string missing_plugin(const PluginHost& host, const Tree& manifest) {
+  const Tree* plugins = manifest.find("plugins");
+  if (plugins == nullptr) return {};
+  for (const Tree& one : plugins->items) {
+    const Tree* kind = one.find("kind");
+    const Tree* name = one.find("name");
+    if (kind == nullptr || name == nullptr || kind->text == "backend") continue;
+    if (!host.has(kind->text, name->text)) return kind->text + "/" + name->text;
+  }
+  return {};
+}
+
+void repeat(const RunEnvironment& environment, const ResolvedConfig& config, const RunRecord& recorded,
+            const fs::path& scratch, std::vector<std::string>& differences) {
+  const fs::path directory = scratch / config.id;
+  // A run that fails again has a record like one that ends.
+  const std::optional<Error> trouble = catch_error([&] { start_run(environment, config, directory, {}); });
+  RunRecord now = read_run_record(directory);
+  if (trouble && !now.end) throw Error(*trouble);
+  if (now.manifest) make_portable(*now.manifest);
+  compare_records(recorded, now, differences);
+  fs::remove_all(directory);
+}
+
+void check(const RunEnvironment& environment, const fs::path& bundle, const fs::path& directory,
+           const fs::path& scratch, bool runs_programs, RunCheck& out) {
+  const RunRecord record = read_run_record(directory);
+  if (!record.manifest) throw Error(record.file.string(), "has no manifest");
+  const std::string plugin = missing_plugin(environment.host, *record.manifest);
+  if (!plugin.empty()) {
+    out.kind = RunCheck::Kind::unchecked;
+    out.reason = "there is no plugin " + plugin;
+    return;
+  }
+  const Tree config = read_run_config(directory);
+  const Tree* backend = config.find_path("backend.type");
+  const std::string maker = backend != nullptr ? backend->text : "";
+  const bool has_backend = environment.host.has("backend", maker);
+  const RecordedRun run =
+      read_recorded_run(config_of(environment.host, bundle, directory, has_backend), directory);
+  if (run.config.options.name != read_identity(directory).name)
+    out.differences.emplace_back("config.yaml and record.jsonl have different names");
+  const bool is_scored = run.scored_by_program() && !runs_programs;
+  const bool is_chosen = std::any_of(run.taps.begin(), run.taps.end(), [](const TapRecord& tap) { return tap.is_of_caller(); });
+  if (maker == "simulator" && !is_scored && !is_chosen)
+    return repeat(environment, run.config, record, scratch, out.differences);
+  out.kind = RunCheck::Kind::replayed;
+  out.reason = is_scored ? "a program scored its taps" : is_chosen ? "a program chose its taps" : "its taps are of the backend " + maker;
+  if (!has_backend) out.reason += ", which is not installed, so its config is not checked against its id";
+  const bool exact = record.build() == build_hash(environment.host, run.config.notes.plugins);
+  for (const ReplayDifference& one : replay_run(environment, run).differences) {
+    if (!differ(one.field, one.recorded, one.replayed, exact)) continue;
+    const std::string place = one.tap > 0 ? fmt::format("tap {}", one.tap) : "summary";
+    out.differences.push_back(
+        fmt::format("{}: {}: recorded {}, now {}", place, one.field, one.recorded, one.replayed));
+  }
+}
+
+/// Throws Error unless the files of a run are exactly as a bundle has them.
+void check_form(const fs::path& directory) {
+  const fs::path config = directory / "config.yaml";
+  if (portable_config(read_run_config(directory), recorded_origins(directory)) != read_file(config))
+    throw Error(config.string(), "is not as 'palpate bundle' writes it");
+  const fs::path record = directory / kRecordFile;
+  const std::string text = read_file(record);
+  if (portable_record(text, record) != text) throw Error(record.string(), "is not as 'palpate bundle' writes it");
+}
+
+}  // namespace
+
+void compare_rows(const Row& recorded, const Row& now, const std::string& place, bool exact,
+                  std::vector<std::string>& differences) {
+  const auto compare = [&](const std::string& field) {
+    const std::string before = shown(recorded.find(field));
+    const std::string after = shown(now.find(field));
+    if (differ(field, before, after, exact))
+      differences.push_back(fmt::format("{}: {}: recorded {}, now {}", place, field, before, after));
+  };
+  for (const auto& [field, value] : recorded.fields) compare(field);
+  for (const auto& [field, value] : now.fields) {
+    if (recorded.find(field) == nullptr) compare(field);
+  }
+}
+
+RunCheck check_run(const RunEnvironment& environment, const UnpackedBundle& bundle, const std::string& run,
+                   const fs::path& scratch, bool runs_programs) {
+  RunCheck out;
+  const std::optional<Error> trouble = catch_error([&] {
+    check_form(bundle.folder() / run);
+    check(environment, bundle.folder(), bundle.folder() / run, scratch, runs_programs, out);
+  });
+  if (trouble) out.differences.emplace_back(trouble->what());
+  return out;
+}
+
+BundleContent check_content(const UnpackedBundle& bundle, const BundleIndex& index) {
+  BundleContent out;
+  std::set<std::string> expected{"README.md", "bundle.json"};
+  const auto try_to = [&](const auto& work) {
+    if (const std::optional<Error> trouble = catch_error(work)) out.differences.emplace_back(trouble->what());
+  };
+  const auto add_run = [&](const std::string& run) {
+    out.runs.push_back(run);
+    expected.insert({run + "/config.yaml", run + "/" + kRecordFile});
+    try_to([&] {
+      Tree config = read_run_config(bundle.folder() / run);
+      for_all(config, [&](const Tree& one) {
+        if (one.is_scalar() && one.text.rfind("files/", 0) == 0) expected.insert(one.text);
+      });
+    });
+  };
+  for (const std::string& record : index.records) {
+    if (record.rfind("records/", 0) == 0) {
+      add_run(record);
+      continue;
+    }
+    try_to([&] {
+      const Sweep sweep = read_sweep(bundle.folder() / record);
+      for (const Job& job : sweep.jobs) add_run(record + "/jobs/" + job.id);
+      const Tree config = read_run_config(sweep.directory);
+      if (fmt::format("sweeps/{}/{}", slug(sweep_name(sweep)), sweep_id(config, sweep)) != record)
+        throw Error(record, "has another name or id than its config");
+      if (portable_sweep_config(config) != read_file(sweep.directory / "config.yaml"))
+        throw Error(record + "/config.yaml", "is not as 'palpate bundle' writes it");
+    });
+    expected.insert({record + "/config.yaml", record + "/manifest.jsonl"});
+  }
+  for (const auto& [name, hash] : bundle.hashes()) {
+    const bool is_result = name.rfind("results/", 0) == 0;  // compared with the output of its command
+    if (!is_result && name.rfind("sources/", 0) != 0 && expected.count(name) == 0)
+      out.differences.push_back(name + " does not belong to the bundle");
+    if (name.rfind("files/", 0) == 0 && fs::path(name).stem().string() != hash)
+      out.differences.push_back(name + " has another content than its name says");
+  }
+  try_to([&] {
+    BundleIndex made = index;
+    std::sort(made.records.begin(), made.records.end());
+    if (!out.runs.empty()) {
+      const fs::path first = bundle.folder() / *std::min_element(out.runs.begin(), out.runs.end()) / kRecordFile;
+      set_version(made, read_file(first), first);
+    }
+    if (index_text(made) != read_file(bundle.folder() / "bundle.json"))
+      throw Error("bundle.json", "does not fit the records");
+    if (readme_text(made) != read_file(bundle.folder() / "README.md"))
+      throw Error("README.md", "is not as 'palpate bundle' writes it");
+  });
+  return out;
+}
+
+}  // namespace palpate

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: MIT
+#include "cli/bundle.hpp"
+
+#include "bundle/bundle.hpp"
+#include "cli/bundle_results.hpp"
+#include "cli/display.hpp"
+#include "cli/output.hpp"
+#include "record/catalogue.hpp"
+#include "record/files.hpp"
+
+#include <palpate/error.hpp>
+
+#include <boost/algorithm/string/predicate.hpp>
+#include <fmt/format.h>
+
+namespace palpate::cli {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kEnding = ".palpate.tar.gz";
+
+/// Returns the name of a bundle: that of the file, or of the first record.
+std::string name_of(const std::string& output, const fs::path& record) {
+  if (output.empty()) return record.parent_path().filename().string();
+  const std::string name = fs::path(output).filename().string();
+  if (!boost::ends_with(name, kEnding) || name == kEnding)
+    throw Error("command line", "-o " + output + ": is not the name of a bundle",
+                fmt::format("write a name that ends in {}", kEnding));
+  return name.substr(0, name.size() - std::string(kEnding).size());
+}
+
+}  // namespace
+
+int bundle(CommandEnvironment& program, const BundleArguments& arguments) {
+  std::vector<CommandWords> results;
+  for (const std::string& one : arguments.results) results.push_back(result_command(one));
+  const std::vector<fs::path> records = find_records(arguments.records);
+  const std::string name = name_of(arguments.output, fs::absolute(records.front()).lexically_normal());
+  check_archived_name(name, arguments.output.empty() ? records.front().string() : arguments.output);
+  const fs::path output = arguments.output.empty() ? name + kEnding : arguments.output;
+  BundleCollector collector(program, {arguments.sources.begin(), arguments.sources.end()});
+  for (const fs::path& one : records) collector.add(one);
+  const TemporaryFolder scratch;
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    for (auto& [file, content] : result_files(program, results[i], records, scratch.path(), true))
+      collector.add_file(fmt::format("results/{}/{}", i + 1, file), std::move(content));
+  }
+  const ArchivedFiles files = collector.finish({name, {}, results, {}, {}});
+  write_archive(output, name, files);
+  print_out("{}: {} files\ndigest: {}\n", output.string(), files.size(), sha256_of(files.at(kSumsFile)));
+  return kDone;
+}
+
+}  // namespace palpate::cli

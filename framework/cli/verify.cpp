@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: MIT
+#include "cli/verify.hpp"
+
+#include "bundle/repeat.hpp"
+#include "cli/bundle_plugins.hpp"
+#include "cli/bundle_results.hpp"
+#include "cli/display.hpp"
+#include "cli/output.hpp"
+#include "cli/sweep_display.hpp"
+#include "config/catch_error.hpp"
+#include "record/files.hpp"
+
+#include <palpate/error.hpp>
+#include <palpate/random.hpp>
+
+#include <boost/algorithm/string/predicate.hpp>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <sstream>
+
+namespace palpate::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kShown = 20;
+
+/// Returns the numbers of `count` of `runs` runs, ascending. The digest of the bundle chooses them, so that the author
+/// of the bundle cannot.
+std::vector<std::size_t> sample_of(std::size_t runs, std::size_t count, const std::string& digest) {
+  std::vector<std::size_t> out(runs);
+  std::iota(out.begin(), out.end(), std::size_t{0});
+  Random random(0, digest);
+  for (std::size_t i = 0; i < std::min(count, runs); ++i) std::swap(out[i], out[i + random.index(runs - i)]);
+  out.resize(std::min(count, runs));
+  std::sort(out.begin(), out.end());
+  return out;
+}
+
+/// Results of the runs come from child processes, as files: the kind, the reason, then one line per difference.
+void write_check(const fs::path& file, const RunCheck& check) {
+  std::string text = std::to_string(static_cast<int>(check.kind)) + "\n" + one_line(check.reason) + "\n";
+  for (const std::string& one : check.differences) text += one_line(one) + "\n";
+  write_file(file, text);
+}
+
+RunCheck read_check(const fs::path& file) {
+  RunCheck out;
+  std::istringstream lines(read_file(file));
+  std::string line;
+  std::getline(lines, line);
+  out.kind = static_cast<RunCheck::Kind>(std::stoi(line));
+  std::getline(lines, out.reason);
+  while (std::getline(lines, line)) out.differences.push_back(line);
+  return out;
+}
+
+/// The differences that were found so far, and what was not checked.
+struct Findings {
+  std::vector<std::string> differences;
+  std::map<std::string, int> unchecked;  ///< numbers of runs by reason
+
+  void add(const std::string& place, const std::vector<std::string>& lines) {
+    for (const std::string& one : lines) differences.push_back(place.empty() ? one : place + ": " + one);
+  }
+};
+
+/// Repeats or replays runs of the bundle, and prints how many. Returns false after an interrupt.
+bool check_runs(const CommandEnvironment& program, const VerifyArguments& arguments, const UnpackedBundle& bundle,
+                const std::vector<std::string>& runs, Findings& findings) {
+  const TemporaryFolder scratch;
+  const std::vector<std::size_t> chosen =
+      sample_of(runs.size(), arguments.sample ? static_cast<std::size_t>(*arguments.sample) : runs.size(), bundle.digest());
+  const auto file_of = [&](std::size_t run) { return scratch.path() / fmt::format("{}.check", run); };
+  if (!compute_jobs(program, chosen, arguments.workers, [&](std::size_t run) {
+        write_check(file_of(run), check_run(program, bundle, runs[run], scratch.path() / std::to_string(run),
+                                            arguments.with_plugins));
+      }))
+    return false;
+  std::map<RunCheck::Kind, int> counts;
+  for (const std::size_t run : chosen) {
+    const RunCheck check = read_check(file_of(run));
+    ++counts[check.kind];
+    if (!check.reason.empty()) ++findings.unchecked[check.reason];
+    findings.add(runs[run], check.differences);
+  }
+  print_out("runs: {} in the bundle, {} repeated, {} replayed, {} not checked\n", runs.size(),
+            counts[RunCheck::Kind::repeated], counts[RunCheck::Kind::replayed], counts[RunCheck::Kind::unchecked]);
+  if (chosen.size() < runs.size()) {
+    constexpr double kRisk = 0.05;
+    const double share = 1.0 - std::pow(kRisk, 1.0 / static_cast<double>(chosen.size()));
+    print_out("sample: if more than {:.2g} % of the runs were changed, it shows one of them with 95 % probability\n",
+              100.0 * share);
+  }
+  return true;
+}
+
+/// Makes each result again and compares it.
+void check_results(const CommandEnvironment& program, const UnpackedBundle& bundle, const BundleIndex& index,
+                   Findings& findings) {
+  const TemporaryFolder scratch;
+  std::vector<fs::path> records;
+  for (const std::string& one : index.records) records.push_back(bundle.folder() / one);
+  std::size_t equal = 0;
+  for (std::size_t i = 0; i < index.results.size(); ++i) {
+    const std::string folder = fmt::format("results/{}/", i + 1);
+    std::vector<std::string> differences;
+    const auto trouble = catch_error([&] {
+      const auto made = result_files(program, result_command(words_text(index.results[i])), records, scratch.path(), false);
+      for (const auto& [name, content] : made) {
+        if (bundle.hashes().count(folder + name) == 0) {
+          differences.push_back(folder + name + " is missing");
+          continue;
+        }
+        const auto lines = compare_outputs(read_file(bundle.folder() / (folder + name)), content, folder + name);
+        differences.insert(differences.end(), lines.begin(), lines.end());
+      }
+      for (const auto& [name, hash] : bundle.hashes()) {
+        const bool is_picture = boost::ends_with(name, ".png");
+        if (boost::starts_with(name, folder) && !is_picture && made.count(name.substr(folder.size())) == 0)
+          differences.push_back(name + " does not belong to the bundle");
+      }
+    });
+    if (trouble) differences.emplace_back(trouble->what());
+    equal += differences.empty() ? 1 : 0;
+    findings.add("", differences);
+  }
+  if (!index.results.empty()) print_out("results: {} of {} are equal\n", equal, index.results.size());
+}
+
+}  // namespace
+
+int verify(CommandEnvironment& program, const VerifyArguments& arguments) {
+  const UnpackedBundle bundle(arguments.bundle, bytes_of_gib(arguments.max_size));
+  print_out("digest: {}\n", bundle.digest());
+  Findings findings;
+  findings.differences = bundle.wrong_sums();
+  const bool sums_match = findings.differences.empty();
+  if (sums_match) {
+    print_out("files: {}, all as in SHA256SUMS\n", bundle.hashes().size());
+    const BundleIndex index = read_index(bundle.folder());
+    const BundlePlugins plugins(program, bundle, arguments.with_plugins);
+    const BundleContent content = check_content(bundle, index);
+    findings.add("", content.differences);
+    if (!check_runs(plugins.program(), arguments, bundle, content.runs, findings)) return kInterrupted;
+    check_results(plugins.program(), bundle, index, findings);
+  }
+  for (const auto& [reason, count] : findings.unchecked) print_out("not repeated: {} runs, because {}\n", count, reason);
+  for (std::size_t i = 0; i < std::min(kShown, findings.differences.size()); ++i)
+    print_out("{}\n", findings.differences[i]);
+  if (findings.differences.size() > kShown) print_out("... and {} more\n", findings.differences.size() - kShown);
+  print_out("{}\n", findings.differences.empty() ? "no differences"
+                                                 : fmt::format("{} differences", findings.differences.size()));
+  return findings.differences.empty() ? kDone : kFailed;
+}
+
+}  // namespace palpate::cli
