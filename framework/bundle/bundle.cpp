@@ -144,9 +144,7 @@ void make_portable(Tree& line) {
   if (Tree* host = line.find("host")) host->text.clear();
   if (Tree* pid = line.find("pid")) pid->text = "0";
   if (Tree* words = line.find("command_line")) words->items.clear();
-  if (Tree* dropped = line.find("dropped")) {
-    for (Tree::Entry& one : dropped->entries) one.value.text = name_only(one.value.text);
-  }
+  if (Tree* dropped = line.find("dropped")) dropped->entries.clear();  // how the config was composed
   if (Tree* plugins = line.find("plugins")) {
     for (Tree& one : plugins->items) one.erase("file");
   }
@@ -236,15 +234,38 @@ std::string BundleCollector::add_named_file(const std::string& file, const Tree&
   return name;
 }
 
-std::string BundleCollector::folder_in_sources(const Tree& folder) const {
-  const fs::path path = fs::weakly_canonical(folder.text);
+std::string BundleCollector::name_in_sources(const fs::path& path) const {
   for (const auto& [source, name] : sources_) {
-    const fs::path below = path.lexically_relative(source);
-    if (below.empty() || *below.begin() == "..") continue;
-    return below == "." ? "/" + name : "/" + name + "/" + below.string();
+    const fs::path below = fs::weakly_canonical(path).lexically_relative(source);
+    if (below == ".") return name;
+    if (!below.empty() && *below.begin() != "..") return name + "/" + below.string();
   }
-  throw Error(folder.text, "is the folder of a program that the bundle lacks",
-              "add --sources " + folder.text + ", or a folder above it");
+  return {};
+}
+
+void BundleCollector::move_program(Tree& command, Tree& folder) const {
+  const std::string whole = name_in_sources(folder.text);
+  // The program is the first word that is a file. Its name does not enter the id, unlike those of other words.
+  std::string::size_type begin = 0;
+  std::string word;
+  for (std::istringstream words(command.text); words >> word;) {
+    begin = command.text.find(word, begin);
+    if (fs::is_regular_file(fs::path(folder.text) / word)) break;
+    begin += word.size();
+    word.clear();
+  }
+  const std::string program = word.empty() ? "" : name_in_sources(fs::path(folder.text) / word);
+  if (program.empty()) {
+    const fs::path file = fs::path(folder.text) / word;
+    throw Error(folder.text, "has a program that the bundle lacks: '" + command.text + "'",
+                "add --sources " + (word.empty() ? folder.text : file.parent_path().string()));
+  }
+  if (!whole.empty() && !fs::path(word).is_absolute()) {
+    folder.text = "/" + whole;
+    return;
+  }
+  folder.text = "/sources";
+  command.text.replace(begin, word.size(), program.substr(std::string("sources/").size()));
 }
 
 void BundleCollector::add_run(const fs::path& directory, const std::string& prefix) {
@@ -269,7 +290,7 @@ void BundleCollector::add_run(const fs::path& directory, const std::string& pref
   }
   for_all(tree, [&](Tree& one) {
     Tree* folder = one.is_map() && one.find("command") != nullptr ? one.find("folder") : nullptr;
-    if (folder != nullptr) folder->text = folder_in_sources(*folder);
+    if (folder != nullptr) move_program(*one.find("command"), *folder);
   });
   files_[prefix + "/config.yaml"] = portable_config(std::move(tree), recorded_origins(directory), replaced);
   const fs::path record = directory / kRecordFile;

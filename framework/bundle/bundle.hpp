@@ -90,8 +90,11 @@ class BundleCollector {
   void add_source(const std::filesystem::path& folder, const std::string& prefix);
   /// Adds a file that a config names, and returns its name in the bundle.
   std::string add_named_file(const std::string& file, const Tree& config, const std::string& path);
-  /// Returns the folder of a program within the sources, as an absolute path below the bundle: "/sources/NAME".
-  std::string folder_in_sources(const Tree& folder) const;
+  /// Returns the name of a file or folder in the sources of the bundle; "" if it is not there.
+  std::string name_in_sources(const std::filesystem::path& path) const;
+  /// Changes the options `command` and `folder` of a program so that they lead to the sources. The folder becomes a path
+  /// from the folder of the bundle, such as /sources/NAME. Throws Error if the sources lack the program.
+  void move_program(Tree& command, Tree& folder) const;
 
   const RunEnvironment& environment_;
   std::map<std::filesystem::path, std::string> sources_;  ///< names of the folders in the bundle

@@ -9,6 +9,7 @@
 #include "cli/sweep_display.hpp"
 #include "config/catch_error.hpp"
 #include "record/files.hpp"
+#include "report/words/words.hpp"
 
 #include <palpate/error.hpp>
 #include <palpate/random.hpp>
@@ -62,7 +63,8 @@ RunCheck read_check(const fs::path& file) {
 /// The differences that were found so far, and what was not checked.
 struct Findings {
   std::vector<std::string> differences;
-  std::map<std::string, int> unchecked;  ///< numbers of runs by reason
+  std::map<std::string, int> not_repeated;  ///< numbers of runs by reason
+  int unchecked = 0;                        ///< number of runs whose plugins are missing
 
   void add(const std::string& place, const std::vector<std::string>& lines) {
     for (const std::string& one : lines) differences.push_back(place.empty() ? one : place + ": " + one);
@@ -85,11 +87,12 @@ bool check_runs(const CommandEnvironment& program, const VerifyArguments& argume
   for (const std::size_t run : chosen) {
     const RunCheck check = read_check(file_of(run));
     ++counts[check.kind];
-    if (!check.reason.empty()) ++findings.unchecked[check.reason];
+    if (!check.reason.empty()) ++findings.not_repeated[check.reason];
     findings.add(runs[run], check.differences);
   }
   print_out("runs: {} in the bundle, {} repeated, {} replayed, {} not checked\n", runs.size(),
             counts[RunCheck::Kind::repeated], counts[RunCheck::Kind::replayed], counts[RunCheck::Kind::unchecked]);
+  findings.unchecked = counts[RunCheck::Kind::unchecked];
   if (chosen.size() < runs.size()) {
     constexpr double kRisk = 0.05;
     const double share = 1.0 - std::pow(kRisk, 1.0 / static_cast<double>(chosen.size()));
@@ -149,13 +152,14 @@ int verify(CommandEnvironment& program, const VerifyArguments& arguments) {
     if (!check_runs(plugins.program(), arguments, bundle, content.runs, findings)) return kInterrupted;
     check_results(plugins.program(), bundle, index, findings);
   }
-  for (const auto& [reason, count] : findings.unchecked) print_out("not repeated: {} runs, because {}\n", count, reason);
-  for (std::size_t i = 0; i < std::min(kShown, findings.differences.size()); ++i)
-    print_out("{}\n", findings.differences[i]);
-  if (findings.differences.size() > kShown) print_out("... and {} more\n", findings.differences.size() - kShown);
-  print_out("{}\n", findings.differences.empty() ? "no differences"
-                                                 : fmt::format("{} differences", findings.differences.size()));
-  return findings.differences.empty() ? kDone : kFailed;
+  for (const auto& [reason, count] : findings.not_repeated)
+    print_out("not repeated: {}, because {}\n", counted(count, "run"), reason);
+  const std::size_t differences = findings.differences.size();
+  for (std::size_t i = 0; i < std::min(kShown, differences); ++i) print_out("{}\n", findings.differences[i]);
+  if (differences > kShown) print_out("... and {} more\n", differences - kShown);
+  print_out("{}{}\n", differences == 0 ? "no differences" : counted(static_cast<long>(differences), "difference"),
+            findings.unchecked == 0 ? "" : ", but some runs were not checked: see --with-plugins");
+  return differences == 0 && findings.unchecked == 0 ? kDone : kFailed;
 }
 
 }  // namespace palpate::cli
