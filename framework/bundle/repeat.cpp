@@ -179,17 +179,20 @@ void check(const RunEnvironment& environment, const fs::path& bundle, const fs::
   const Tree* backend = config.find_path("backend.type");
   const std::string maker = backend != nullptr ? backend->text : "";
   const bool has_backend = environment.host.has("backend", maker);
-  const RecordedRun run =
-      read_recorded_run(config_of(environment.host, bundle, directory, has_backend), directory);
-  if (run.config.options.name != read_identity(directory).name)
+  ResolvedConfig resolved = config_of(environment.host, bundle, directory, has_backend);
+  if (resolved.options.name != read_identity(directory).name)
     out.differences.emplace_back("config.yaml and record.jsonl have different names");
-  const bool is_scored = run.scored_by_program() && !runs_programs;
-  const bool is_chosen = std::any_of(run.taps.begin(), run.taps.end(), [](const TapRecord& tap) { return tap.is_of_caller(); });
+  const bool is_scored = resolved.notes.plugins.count({"acquisition", "program"}) > 0 && !runs_programs;
+  // In a run from Python, the calling program may have scored the candidates.
+  const std::vector<TapRecord> taps = read_taps(record.taps, record.file);
+  const bool is_chosen = std::any_of(taps.begin(), taps.end(), [](const TapRecord& tap) { return tap.is_of_caller(); });
   if (maker == "simulator" && !is_scored && !is_chosen)
-    return repeat(environment, run.config, record, scratch, out.differences);
+    return repeat(environment, resolved, record, scratch, out.differences);
   out.kind = RunCheck::Kind::replayed;
-  out.reason = is_scored ? "a program scored its taps" : is_chosen ? "a program chose its taps" : "its taps are of the backend " + maker;
+  out.reason = is_scored || is_chosen ? "a program chose its taps" : "its taps are of the backend " + maker;
   if (!has_backend) out.reason += ", which is not installed, so its config is not checked against its id";
+  if (taps.empty()) return;
+  const RecordedRun run = read_recorded_run(std::move(resolved), directory);
   const bool exact = record.build() == build_hash(environment.host, run.config.notes.plugins);
   for (const ReplayDifference& one : replay_run(environment, run).differences) {
     if (!differ(one.field, one.recorded, one.replayed, exact)) continue;
