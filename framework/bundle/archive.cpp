@@ -5,8 +5,8 @@
 
 #include <palpate/error.hpp>
 
-#include <boost/algorithm/string/case_conv.hpp>
 #include <fmt/format.h>
+#include <boost/algorithm/string/case_conv.hpp>
 
 #include <algorithm>
 #include <array>
@@ -24,9 +24,9 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::size_t kBlock = 512;             ///< size of a header; contents are padded to a multiple of it
-constexpr std::size_t kShortName = 100;         ///< longer names are split at a '/' into `prefix` and `name`
-constexpr std::size_t kLongestName = 200;       ///< without the folder of the bundle
+constexpr std::size_t kBlock = 512;        ///< size of a header; contents are padded to a multiple of it
+constexpr std::size_t kShortName = 100;    ///< longer names are split at a '/' into `prefix` and `name`
+constexpr std::size_t kLongestName = 200;  ///< without the folder of the bundle
 constexpr std::size_t kLongestPrefix = 155;
 constexpr std::ptrdiff_t kMostLevels = 12;
 constexpr std::size_t kMostFiles = 400'000;
@@ -277,7 +277,8 @@ void read_archive(const fs::path& file, std::uintmax_t most_bytes,
     if (in.read(padding_of(size).size()) != padding_of(size)) throw refused(place, "has data between its files");
     use(name, content);
   }
-  if (in.read(kBlock) != std::string(kBlock, '\0') || !in.at_end()) throw refused(place, "has data behind its last file");
+  if (in.read(kBlock) != std::string(kBlock, '\0') || !in.at_end())
+    throw refused(place, "has data behind its last file");
 }
 
 }  // namespace palpate

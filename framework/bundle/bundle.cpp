@@ -100,8 +100,8 @@ BundleIndex read_index(const fs::path& folder) {
   }
   if (text_at(tree, "bundle") != "1")
     throw Error(file.string(), "has a format that this palpate does not know", "use the palpate that made the bundle");
-  BundleIndex out{text_at(tree, "name"), texts_in(*tree.find("records")), {}, text_at(tree, "version"),
-                  text_at(tree, "commit")};
+  BundleIndex out{
+      text_at(tree, "name"), texts_in(*tree.find("records")), {}, text_at(tree, "version"), text_at(tree, "commit")};
   for (const Tree& one : tree.find("results")->items) out.results.push_back(texts_in(one));
   return out;
 }
@@ -110,9 +110,11 @@ std::string readme_text(const BundleIndex& index) {
   std::string out = fmt::format(
       "# {0}\n\n"
       "This archive holds experiments in active touch, made with palpate {1} (commit {2}), and the results that were\n"
-      "computed from them. With palpate installed, this command makes every run, table and figure again and compares:\n\n"
+      "computed from them. With palpate installed, this command makes every run, table and figure again and "
+      "compares:\n\n"
       "    palpate verify {0}.palpate.tar.gz\n\n"
-      "`palpate rerun {0}.palpate.tar.gz ID` opens one run. Without palpate, `sha256sum -c SHA256SUMS` checks the files.\n"
+      "`palpate rerun {0}.palpate.tar.gz ID` opens one run. Without palpate, `sha256sum -c SHA256SUMS` checks the "
+      "files.\n"
       "The digest of the bundle is the SHA-256 of SHA256SUMS.\n\n"
       "| folder | content |\n|---|---|\n",
       index.name, index.version, index.commit.empty() ? "unknown" : index.commit);
@@ -122,7 +124,8 @@ std::string readme_text(const BundleIndex& index) {
   for (std::size_t i = 0; i < index.results.size(); ++i)
     out += fmt::format("| results/{} | `palpate {}` |\n", i + 1, words_text(index.results[i]));
   return out +
-         "\nEach run has config.yaml, every option with its value, unit and origin, and record.jsonl, one JSON object per\n"
+         "\nEach run has config.yaml, every option with its value, unit and origin, and record.jsonl, one JSON object "
+         "per\n"
          "tap. `files` holds what configs name, such as meshes; `sources` holds code that palpate does not contain.\n\n"
          "Please cite palpate and the paper of its method: Z. Sun and C. Min, Active tapping via Gaussian process for\n"
          "efficient unknown object surface reconstruction, 2021, arXiv:2110.09593.\n";
@@ -209,12 +212,13 @@ void BundleCollector::add_source(const fs::path& folder, const std::string& pref
   }
 }
 
-void BundleCollector::add(const fs::path& directory) {
+std::string BundleCollector::add(const fs::path& directory) {
   if (is_sweep(directory)) return add_sweep(read_sweep(directory));
   const RunIdentity run = read_identity(directory);
   const std::string name = fmt::format("records/{}/{}", slug(run.name), run.identity.substr(0, kIdLength));
   add_run(directory, name);
   records_.push_back(name);
+  return name;
 }
 
 std::string BundleCollector::add_named_file(const std::string& file, const Tree& config, const std::string& path) {
@@ -224,8 +228,7 @@ std::string BundleCollector::add_named_file(const std::string& file, const Tree&
   // Shipped configs name shipped files as configs/...
   if (!is_there(place)) place = environment_.installation.configs.parent_path() / file;
   const std::optional<std::string> content = read_if_there(place, kMostMeshBytes, FileOrigin::user);
-  if (!content)
-    throw Error(file, "is missing, but a run to bundle has used it", "put it back, or leave this run out");
+  if (!content) throw Error(file, "is missing, but a run to bundle has used it", "put it back, or leave this run out");
   const Tree* checksum = config.find_path(path.substr(0, path.rfind('.')) + ".checksum");
   if (checksum != nullptr && checksum->text != hash_of(*content))
     throw Error(file, "was changed since a run to bundle has used it", "put it back, or leave this run out");
@@ -297,14 +300,15 @@ void BundleCollector::add_run(const fs::path& directory, const std::string& pref
   files_[prefix + "/" + kRecordFile] = portable_record(read_file(record), record);
 }
 
-void BundleCollector::add_sweep(const Sweep& sweep) {
+std::string BundleCollector::add_sweep(const Sweep& sweep) {
   Tree config = read_run_config(sweep.directory);
   ArchivedFiles jobs;
   std::swap(jobs, files_);
   for (const Job& job : sweep.jobs) add_run(job_directory(sweep, job), "jobs/" + job.id);
   std::swap(jobs, files_);
   for_all(config, [&](Tree& one) {
-    const auto named = one.is_scalar() && fs::path(one.text).is_absolute() ? named_files_.find(one.text) : named_files_.end();
+    const auto named =
+        one.is_scalar() && fs::path(one.text).is_absolute() ? named_files_.find(one.text) : named_files_.end();
     if (named != named_files_.end()) one.text = named->second;
   });
   const std::string id = sweep_id(config, sweep);
@@ -314,6 +318,7 @@ void BundleCollector::add_sweep(const Sweep& sweep) {
   files_[name + "/config.yaml"] = portable_sweep_config(std::move(config));
   files_[name + "/" + kManifest] = manifest_text(sweep, id);
   records_.push_back(name);
+  return name;
 }
 
 ArchivedFiles BundleCollector::finish(BundleIndex index) {

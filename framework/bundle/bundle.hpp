@@ -72,13 +72,13 @@ std::string portable_sweep_config(Tree config);
 /// Collects the files of a bundle.
 class BundleCollector {
  public:
-  /// `sources`: folders with the sources of plugins and programs. Throws Error for a folder that cannot be read, and for
-  /// two folders with the same name. Hidden files, build folders and links are left out.
+  /// `sources`: folders with the sources of plugins and programs. Throws Error for a folder that cannot be read, and
+  /// for two folders with the same name. Hidden files, build folders and links are left out.
   BundleCollector(const RunEnvironment& environment, const std::vector<std::filesystem::path>& sources);
 
   /// Adds a run or a sweep. Throws Error for a run that is running or has no record, for a missing or changed file, and
-  /// for a plugin or program whose sources are not given.
-  void add(const std::filesystem::path& directory);
+  /// for a plugin or program whose sources are not given. Returns the folder of the record in the bundle.
+  std::string add(const std::filesystem::path& directory);
   void add_file(const std::string& name, std::string content) { files_[name] = std::move(content); }
 
   /// Returns all files of the bundle. The name and the results of `index` must be set.
@@ -86,14 +86,14 @@ class BundleCollector {
 
  private:
   void add_run(const std::filesystem::path& directory, const std::string& prefix);
-  void add_sweep(const Sweep& sweep);
+  std::string add_sweep(const Sweep& sweep);
   void add_source(const std::filesystem::path& folder, const std::string& prefix);
   /// Adds a file that a config names, and returns its name in the bundle.
   std::string add_named_file(const std::string& file, const Tree& config, const std::string& path);
   /// Returns the name of a file or folder in the sources of the bundle; "" if it is not there.
   std::string name_in_sources(const std::filesystem::path& path) const;
-  /// Changes the options `command` and `folder` of a program so that they lead to the sources. The folder becomes a path
-  /// from the folder of the bundle, such as /sources/NAME. Throws Error if the sources lack the program.
+  /// Changes the options `command` and `folder` of a program so that they lead to the sources. The folder becomes a
+  /// path from the folder of the bundle, such as /sources/NAME. Throws Error if the sources lack the program.
   void move_program(Tree& command, Tree& folder) const;
 
   const RunEnvironment& environment_;
@@ -119,7 +119,7 @@ class UnpackedBundle {
   std::vector<std::string> wrong_sums() const;
 
  private:
-  TemporaryFolder folder_;
+  ScratchFolder folder_;
   std::map<std::string, std::string> hashes_;
   std::string sums_;
   std::string digest_;

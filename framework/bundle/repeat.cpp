@@ -5,6 +5,7 @@
 #include "config/yaml.hpp"
 #include "record/fields.hpp"
 #include "record/files.hpp"
+#include "record/json.hpp"
 #include "record/record_reader.hpp"
 #include "record/recorded_run.hpp"
 #include "record/run_replay.hpp"
@@ -12,11 +13,13 @@
 #include <palpate/error.hpp>
 
 #include <fmt/format.h>
+#include <boost/algorithm/string/predicate.hpp>
 
 #include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <optional>
+#include <sstream>
 #include <utility>
 
 namespace palpate {
@@ -52,65 +55,55 @@ bool differ(const std::string& field, const std::string& recorded, const std::st
          std::abs(*a - *b) > kNumberTolerance * std::max(std::abs(*a), std::abs(*b)) + kSmallNumber;
 }
 
-/// Returns the manifest as a row, without what may differ between two equal runs. With `build`, what describes the
-/// build remains.
-Row manifest_row(const Tree& manifest, bool build) {
-  static const std::set<std::string> kOfRun{"manifest", "name", "id", "identity", "dropped"};
-  static const std::set<std::string> kOfProcess{"at"};
-  Row out;
-  for (const Tree::Entry& one : manifest.entries) {
-    if (build ? kOfProcess.count(one.key) == 0 : kOfRun.count(one.key) > 0)
-      out.add("manifest." + one.key, one.value.canonical());
+bool is_of_process(const std::string& field) { return field == "at" || field == "host" || field == "pid"; }
+
+/// Returns whether a field of a line is the same in every repetition of a run. `exact`: by the same build.
+bool is_comparable(LineKind kind, const std::string& field, bool exact) {
+  static const std::set<std::string> kOfRun{"manifest", "name", "id", "identity"};
+  constexpr std::string_view kSummary = "summary.";
+  if (is_of_process(field) || (kind == LineKind::timing && field != "timing")) return false;
+  if (kind == LineKind::manifest) return exact || kOfRun.count(field) > 0;
+  if (kind == LineKind::attempt) return exact || field != "build";
+  // Of the files beside the record, only the table of the taps follows from the record without its times.
+  if (kind == LineKind::end && boost::starts_with(field, "files."))
+    return exact && boost::starts_with(field, fmt::format("files.{}.", kTapsTable));
+  return !boost::starts_with(field, kSummary) || !depends_on_machine(field.substr(kSummary.size()));
+}
+
+/// Lines of a record without clocks, and without what depends on kills if `attempts` is above 1.
+std::vector<std::pair<LineKind, Row>> comparable_lines(const std::string& text, std::size_t attempts, bool exact) {
+  std::vector<std::pair<LineKind, Row>> out;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    const LineKind kind = kind_of_line(line);
+    Row row = parse_json_row(line).value_or(Row());
+    const bool is_of_attempt = kind == LineKind::attempt || kind == LineKind::setup || kind == LineKind::timing ||
+                               kind == LineKind::note ||
+                               (kind == LineKind::end && row.text("end") == ending_name(Ending::EndKind::interrupted));
+    if (attempts > 1 && is_of_attempt) continue;
+    const auto end = std::remove_if(row.fields.begin(), row.fields.end(),
+                                    [&](const auto& one) { return !is_comparable(kind, one.first, exact); });
+    row.fields.erase(end, row.fields.end());
+    out.emplace_back(kind, std::move(row));
   }
   return out;
 }
 
-bool is_of_process(const std::string& field) { return field == "at" || field == "host" || field == "pid"; }
-
-/// Compares two lists of rows of one kind.
-void compare_lists(const std::vector<Row>& recorded, const std::vector<Row>& now, const std::string& kind, bool exact,
-                   std::vector<std::string>& differences) {
-  if (recorded.size() != now.size())
-    differences.push_back(fmt::format("{} lines `{}`, now {}", recorded.size(), kind, now.size()));
-  for (std::size_t i = 0; i < std::min(recorded.size(), now.size()); ++i)
-    compare_rows(recorded[i], now[i], fmt::format("{} {}", kind, i + 1), exact, differences);
-}
-
-/// Compares the record of a run with that of its repetition.
-void compare_records(const RunRecord& recorded, const RunRecord& now, std::vector<std::string>& differences) {
-  const bool exact = recorded.build() == now.build();
-  if (recorded.manifest && now.manifest)
-    compare_rows(manifest_row(*recorded.manifest, exact), manifest_row(*now.manifest, exact), "line 1", true,
-                 differences);
-  const bool has_ended = recorded.end && recorded.end->how != Ending::EndKind::interrupted;
-  std::vector<Row> taps = now.taps;
-  if (!has_ended) taps.resize(std::min(taps.size(), recorded.taps.size()));
-  compare_lists(recorded.taps, taps, "tap", exact, differences);
-  // Each attempt that was killed may have lost the times of one tap.
-  if (recorded.timings.size() + std::max<std::size_t>(recorded.attempts.size(), 1) < recorded.taps.size() + 1)
-    differences.push_back(fmt::format("{} taps, but the times of {}", recorded.taps.size(), recorded.timings.size()));
-  if (recorded.attempts.size() == 1 && now.attempts.size() == 1) {
-    std::vector<std::vector<Row>> attempts{recorded.attempts, now.attempts};
-    for (std::vector<Row>& rows : attempts) {
-      auto& fields = rows.front().fields;
-      fields.erase(std::remove_if(fields.begin(), fields.end(),
-                                  [&](const auto& one) { return is_of_process(one.first) || (!exact && one.first == "build"); }),
-                   fields.end());
-    }
-    compare_lists(attempts[0], attempts[1], "attempt", exact, differences);
+/// Compares the texts of the record of a run, which had some attempts, and of the record of its repetition.
+void compare_records(const std::string& recorded, const std::string& now, std::size_t attempts, bool exact,
+                     std::vector<std::string>& differences) {
+  const auto before = comparable_lines(recorded, attempts, exact);
+  auto after = comparable_lines(now, attempts, exact);
+  const bool has_ended = !before.empty() && before.back().first == LineKind::end &&
+                         before.back().second.text("end") != ending_name(Ending::EndKind::interrupted);
+  if (!has_ended) after.resize(std::min(after.size(), before.size()));  // the repetition goes on
+  if (before.size() != after.size())
+    differences.push_back(fmt::format("{} lines, now {}", before.size(), after.size()));
+  for (std::size_t i = 0; i < std::min(before.size(), after.size()); ++i) {
+    const auto& [kind, row] = before[i];
+    const std::string place = kind == LineKind::tap ? "tap " + row.cell("tap") : fmt::format("line {}", i + 1);
+    compare_rows(row, after[i].second, place, exact, differences);
   }
-  const auto canonical = [](const std::optional<Tree>& tree) { return tree ? tree->canonical() : ""; };
-  if (canonical(recorded.setup) != canonical(now.setup)) differences.emplace_back("the line `setup` differs");
-  if (!has_ended) return;
-  compare_lists(recorded.objects, now.objects, "object", exact, differences);
-  if (!now.end) {
-    differences.emplace_back("the repeated run did not end");
-    return;
-  }
-  if (recorded.end->how != now.end->how || recorded.end->reason != now.end->reason)
-    differences.push_back(fmt::format("end: recorded {}: {}, now {}: {}", ending_name(recorded.end->how),
-                                      recorded.end->reason, ending_name(now.end->how), now.end->reason));
-  compare_rows(recorded.end->summary, now.end->summary, "summary", exact, differences);
 }
 
 /// Replaces the backend by the simulator, because a replay does not need the backend, and its plugin may be missing on
@@ -122,9 +115,10 @@ void replace_backend(Tree& config) {
   config.erase("motion");
 }
 
-/// Returns the config of the run in `directory`. `bundle`: folder of the bundle, in which the programs are. Throws Error
-/// if the config does not fit the identity in the record, which is not checked without the backend.
-ResolvedConfig config_of(const PluginHost& host, const fs::path& bundle, const fs::path& directory, bool has_backend) {
+/// Returns the config of the run in `directory`, which `build` made. `bundle`: folder of the bundle, in which the
+/// programs are. Throws Error if the config does not fit the record; its identity is not checked without the backend.
+ResolvedConfig config_of(const PluginHost& host, const fs::path& bundle, const fs::path& directory, bool has_backend,
+                         const std::string& build) {
   Tree tree = read_run_config(directory);
   for_all(tree, [&](Tree& one) {
     Tree* folder = one.is_map() && one.find("command") != nullptr ? one.find("folder") : nullptr;
@@ -132,11 +126,19 @@ ResolvedConfig config_of(const PluginHost& host, const fs::path& bundle, const f
   });
   if (!has_backend) replace_backend(tree);
   ResolvedConfig out = resolve_experiment(tree, host);
-  const std::string identity = read_identity(directory).identity;
-  if (has_backend && (identity != out.identity || directory.filename() != out.id))
-    throw Error("config.yaml", fmt::format("has the id {}, the record has {}", out.id, identity.substr(0, kIdLength)));
-  out.identity = identity;
-  out.id = identity.substr(0, kIdLength);
+  const RunIdentity recorded = read_identity(directory);
+  if (has_backend && (recorded.identity != out.identity || directory.filename() != out.id))
+    throw Error("config.yaml",
+                fmt::format("has the id {}, the record has {}", out.id, recorded.identity.substr(0, kIdLength)));
+  if (recorded.name != out.options.name) throw Error("config.yaml", "has another name than the record");
+  out.identity = recorded.identity;
+  out.id = out.identity.substr(0, kIdLength);
+  // A record has every option of the build that made it.
+  Tree full = out.tree;
+  for (const std::string& path : out.notes.files) full.at_path(path, {}).text = tree.find_path(path)->text;
+  if (has_backend && build == build_hash(host, out.notes.plugins) &&
+      portable_config(full, {}) != portable_config(tree, {}))
+    throw Error("config.yaml", "lacks an option");
   return out;
 }
 
@@ -154,14 +156,14 @@ std::string missing_plugin(const PluginHost& host, const Tree& manifest) {
 }
 
 void repeat(const RunEnvironment& environment, const ResolvedConfig& config, const RunRecord& recorded,
-            const fs::path& scratch, std::vector<std::string>& differences) {
+            const fs::path& scratch, bool exact, std::vector<std::string>& differences) {
   const fs::path directory = scratch / config.id;
   // A run that fails again has a record like one that ends.
   const std::optional<Error> trouble = catch_error([&] { start_run(environment, config, directory, {}); });
-  RunRecord now = read_run_record(directory);
-  if (trouble && !now.end) throw Error(*trouble);
-  if (now.manifest) make_portable(*now.manifest);
-  compare_records(recorded, now, differences);
+  if (trouble && !read_record_end(directory).end) throw Error(*trouble);
+  const fs::path file = directory / kRecordFile;
+  compare_records(read_file(recorded.file), portable_record(read_file(file), file), recorded.attempts.size(), exact,
+                  differences);
   fs::remove_all(directory);
 }
 
@@ -169,6 +171,8 @@ void check(const RunEnvironment& environment, const fs::path& bundle, const fs::
            const fs::path& scratch, bool runs_programs, RunCheck& out) {
   const RunRecord record = read_run_record(directory);
   if (!record.manifest) throw Error(record.file.string(), "has no manifest");
+  if (!record.attempts.empty() && record.attempts.front().text("build") != record.build())
+    throw Error(record.file.string(), "names two builds for its first attempt");
   const std::string plugin = missing_plugin(environment.host, *record.manifest);
   if (!plugin.empty()) {
     out.kind = RunCheck::Kind::unchecked;
@@ -179,26 +183,23 @@ void check(const RunEnvironment& environment, const fs::path& bundle, const fs::
   const Tree* backend = config.find_path("backend.type");
   const std::string maker = backend != nullptr ? backend->text : "";
   const bool has_backend = environment.host.has("backend", maker);
-  ResolvedConfig resolved = config_of(environment.host, bundle, directory, has_backend);
-  if (resolved.options.name != read_identity(directory).name)
-    out.differences.emplace_back("config.yaml and record.jsonl have different names");
+  ResolvedConfig resolved = config_of(environment.host, bundle, directory, has_backend, record.build());
+  out.same_build = record.build() == build_hash(environment.host, resolved.notes.plugins);
   const bool is_scored = resolved.notes.plugins.count({"acquisition", "program"}) > 0 && !runs_programs;
   // In a run from Python, the calling program may have scored the candidates.
   const std::vector<TapRecord> taps = read_taps(record.taps, record.file);
   const bool is_chosen = std::any_of(taps.begin(), taps.end(), [](const TapRecord& tap) { return tap.is_of_caller(); });
   if (maker == "simulator" && !is_scored && !is_chosen)
-    return repeat(environment, resolved, record, scratch, out.differences);
+    return repeat(environment, resolved, record, scratch, out.same_build, out.differences);
   out.kind = RunCheck::Kind::replayed;
   out.reason = is_scored || is_chosen ? "a program chose its taps" : "its taps are of the backend " + maker;
   if (!has_backend) out.reason += ", which is not installed, so its config is not checked against its id";
   if (taps.empty()) return;
   const RecordedRun run = read_recorded_run(std::move(resolved), directory);
-  const bool exact = record.build() == build_hash(environment.host, run.config.notes.plugins);
   for (const ReplayDifference& one : replay_run(environment, run).differences) {
-    if (!differ(one.field, one.recorded, one.replayed, exact)) continue;
+    if (!differ(one.field, one.recorded, one.replayed, out.same_build)) continue;
     const std::string place = one.tap > 0 ? fmt::format("tap {}", one.tap) : "summary";
-    out.differences.push_back(
-        fmt::format("{}: {}: recorded {}, now {}", place, one.field, one.recorded, one.replayed));
+    out.differences.push_back(fmt::format("{}: {}: recorded {}, now {}", place, one.field, one.recorded, one.replayed));
   }
 }
 

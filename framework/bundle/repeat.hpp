@@ -23,6 +23,8 @@ struct RunCheck {
   Kind kind = Kind::repeated;
   std::string reason;                    ///< why a run was not repeated; "" if it was
   std::vector<std::string> differences;  ///< one line per difference
+  /// whether the program and the plugins are those that made the run; then all numbers must be equal
+  bool same_build = false;
 };
 
 /// Largest relative difference between numbers that two builds compute. Places, heights and outcomes of taps must be

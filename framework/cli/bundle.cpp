@@ -10,8 +10,12 @@
 
 #include <palpate/error.hpp>
 
-#include <boost/algorithm/string/predicate.hpp>
 #include <fmt/format.h>
+
+#include <boost/algorithm/string/predicate.hpp>
+#include <map>
+#include <string>
+#include <vector>
 
 namespace palpate::cli {
 
@@ -36,15 +40,19 @@ std::string name_of(const std::string& output, const fs::path& record) {
 int bundle(CommandEnvironment& program, const BundleArguments& arguments) {
   std::vector<CommandWords> results;
   for (const std::string& one : arguments.results) results.push_back(result_command(one));
-  const std::vector<fs::path> records = find_records(arguments.records);
-  const std::string name = name_of(arguments.output, fs::absolute(records.front()).lexically_normal());
-  check_archived_name(name, arguments.output.empty() ? records.front().string() : arguments.output);
+  const std::vector<fs::path> found = find_records(arguments.records);
+  const std::string name = name_of(arguments.output, fs::absolute(found.front()).lexically_normal());
+  check_archived_name(name, arguments.output.empty() ? found.front().string() : arguments.output);
   const fs::path output = arguments.output.empty() ? name + kEnding : arguments.output;
   BundleCollector collector(program, {arguments.sources.begin(), arguments.sources.end()});
-  for (const fs::path& one : records) collector.add(one);
-  const TemporaryFolder scratch;
+  // Results of several records depend on their order, and a bundle lists them by their names in it.
+  std::map<std::string, fs::path> records;
+  for (const fs::path& one : found) records[collector.add(one)] = one;
+  std::vector<fs::path> directories;
+  for (const auto& [folder, directory] : records) directories.push_back(directory);
+  const ScratchFolder scratch;
   for (std::size_t i = 0; i < results.size(); ++i) {
-    for (auto& [file, content] : result_files(program, results[i], records, scratch.path(), true))
+    for (auto& [file, content] : result_files(program, results[i], directories, scratch.path()))
       collector.add_file(fmt::format("results/{}/{}", i + 1, file), std::move(content));
   }
   const ArchivedFiles files = collector.finish({name, {}, results, {}, {}});

@@ -72,8 +72,8 @@ BundlePlugins::BundlePlugins(const CommandEnvironment& program, const UnpackedBu
     folders.push_back(build / "lib" / "palpate");
   }
   host_.emplace(folders);
-  program_.emplace(CommandEnvironment{{*host_, program.installation, program.command_line, program.interrupted},
-                                      program.composer});
+  program_.emplace(
+      CommandEnvironment{{*host_, program.installation, program.command_line, program.interrupted}, program.composer});
 }
 
 }  // namespace palpate::cli

@@ -11,8 +11,8 @@
 
 namespace palpate::cli {
 
-/// The plugins that palpate contains, and those of the bundle if the user allows it. PALPATE_PLUGIN_PATH does not count,
-/// so that a bundle gives the same results for all users.
+/// The plugins that palpate contains, and those of the bundle if the user allows it. PALPATE_PLUGIN_PATH does not
+/// count, so that a bundle gives the same results for all users.
 class BundlePlugins {
  public:
   /// `builds`: whether to build the plugins in `sources/` of the bundle. On a terminal, asks the user first. Throws
@@ -23,7 +23,7 @@ class BundlePlugins {
   const CommandEnvironment& program() const { return *program_; }
 
  private:
-  TemporaryFolder builds_;
+  ScratchFolder builds_;
   std::optional<PluginHost> host_;
   std::optional<CommandEnvironment> program_;
 };

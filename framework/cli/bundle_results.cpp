@@ -49,7 +49,8 @@ std::string output_of(const CommandEnvironment& program, const CommandWords& wor
     }
   });
   if (!child || !child->wait() || child->status() != 0) {
-    throw Error("palpate " + words_text(words), "failed: " + (child ? child->said() : std::string("no process")), {}, Error::Kind::run);
+    throw Error("palpate " + words_text(words), "failed: " + (child ? child->said() : std::string("no process")), {},
+                Error::Kind::run);
   }
   return read_file(file);
 }
@@ -95,19 +96,15 @@ CommandWords result_command(const std::string& text) {
 }
 
 std::map<std::string, std::string> result_files(const CommandEnvironment& program, const CommandWords& command,
-                                                const std::vector<fs::path>& records, const fs::path& scratch,
-                                                bool draws) {
+                                                const std::vector<fs::path>& records, const fs::path& scratch) {
   CommandWords words = command;
-  for (const fs::path& record : records) words.insert(words.begin() + 1, record.string());
+  for (std::size_t i = 0; i < records.size(); ++i)
+    words.insert(words.begin() + 1 + static_cast<std::ptrdiff_t>(i), records[i].string());
   if (command[0] == "curves") {
     const fs::path table = scratch / "curves.csv";
-    const fs::path picture = scratch / "curves.png";
     words.insert(words.end(), {"-o", table.string()});
-    if (draws) words.insert(words.end(), {"-o", picture.string()});
     output_of(program, words, scratch);
-    std::map<std::string, std::string> out{{"curves.csv", read_file(table)}};
-    if (draws) out["curves.png"] = read_file(picture);
-    return out;
+    return {{"curves.csv", read_file(table)}};
   }
   const bool is_table = command[0] == "compare" && format_of(command).empty();
   if (is_table) words.insert(words.end(), {"--format", "csv"});
@@ -118,7 +115,8 @@ std::map<std::string, std::string> result_files(const CommandEnvironment& progra
   return {{"table." + ending, output_of(program, words, scratch)}};
 }
 
-std::vector<std::string> compare_outputs(const std::string& recorded, const std::string& now, const std::string& name) {
+std::vector<std::string> compare_outputs(const std::string& recorded, const std::string& now, const std::string& name,
+                                         bool exact) {
   std::vector<std::string> out;
   std::istringstream before(recorded);
   std::istringstream after(now);
@@ -130,7 +128,7 @@ std::vector<std::string> compare_outputs(const std::string& recorded, const std:
     if (a == b && has_a == has_b) continue;
     const std::vector<std::string> first = cells_of(a);
     const std::vector<std::string> second = cells_of(b);
-    if (has_a != has_b || !std::equal(first.begin(), first.end(), second.begin(), second.end(), are_equal))
+    if (exact || has_a != has_b || !std::equal(first.begin(), first.end(), second.begin(), second.end(), are_equal))
       out.push_back(fmt::format("{}:{}: recorded '{}', now '{}'", name, number, a, b));
   }
 }

@@ -56,7 +56,8 @@ int rerun(CommandEnvironment& program, const RerunArguments& arguments) {
       return start_run(program, own, directory, {}, observers);
     });
   }
-  if (is_there(directory / kRecordFile)) throw Error(directory.string(), "exists already", "remove it, or choose --runs");
+  if (is_there(directory / kRecordFile))
+    throw Error(directory.string(), "exists already", "remove it, or choose --runs");
   make_folder(directory);
   write_file(directory / "config.yaml", to_yaml_with_places(tree) + "\n");
   write_file(directory / kRecordFile, read_file(source / kRecordFile));

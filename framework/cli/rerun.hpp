@@ -19,8 +19,8 @@ struct RerunArguments {
 PALPATE_WHOLE int rerun(CommandEnvironment& program, const RerunArguments& arguments);
 
 inline void add_rerun(CommandLine& line) {
-  auto [command, arguments] = line.add<RerunArguments>(
-      "rerun", "Make one run of a bundle again, as a run of your own", rerun, kNeedsEverything);
+  auto [command, arguments] = line.add<RerunArguments>("rerun", "Make one run of a bundle again, as a run of your own",
+                                                       rerun, kNeedsEverything);
   command.argument("BUNDLE", arguments.bundle, "FILE", "archive that 'palpate bundle' wrote", {required()});
   command.argument("RUN", arguments.run, "ID", "id of a run in the bundle, or its first digits", {required()});
   command.argument("--runs", arguments.runs, "FOLDER", kRunsHelp, {with_default()});

@@ -14,8 +14,8 @@
 #include <palpate/error.hpp>
 #include <palpate/random.hpp>
 
-#include <boost/algorithm/string/predicate.hpp>
 #include <fmt/format.h>
+#include <boost/algorithm/string/predicate.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -42,9 +42,10 @@ std::vector<std::size_t> sample_of(std::size_t runs, std::size_t count, const st
   return out;
 }
 
-/// Results of the runs come from child processes, as files: the kind, the reason, then one line per difference.
+/// Results of the runs come from child processes, as files: kind, build, reason, then one line per difference.
 void write_check(const fs::path& file, const RunCheck& check) {
-  std::string text = std::to_string(static_cast<int>(check.kind)) + "\n" + one_line(check.reason) + "\n";
+  std::string text =
+      fmt::format("{}\n{}\n{}\n", static_cast<int>(check.kind), int{check.same_build}, one_line(check.reason));
   for (const std::string& one : check.differences) text += one_line(one) + "\n";
   write_file(file, text);
 }
@@ -55,6 +56,8 @@ RunCheck read_check(const fs::path& file) {
   std::string line;
   std::getline(lines, line);
   out.kind = static_cast<RunCheck::Kind>(std::stoi(line));
+  std::getline(lines, line);
+  out.same_build = line == "1";
   std::getline(lines, out.reason);
   while (std::getline(lines, line)) out.differences.push_back(line);
   return out;
@@ -65,6 +68,7 @@ struct Findings {
   std::vector<std::string> differences;
   std::map<std::string, int> not_repeated;  ///< numbers of runs by reason
   int unchecked = 0;                        ///< number of runs whose plugins are missing
+  bool same_build = true;                   ///< whether this build made all runs that were checked
 
   void add(const std::string& place, const std::vector<std::string>& lines) {
     for (const std::string& one : lines) differences.push_back(place.empty() ? one : place + ": " + one);
@@ -74,9 +78,9 @@ struct Findings {
 /// Repeats or replays runs of the bundle, and prints how many. Returns false after an interrupt.
 bool check_runs(const CommandEnvironment& program, const VerifyArguments& arguments, const UnpackedBundle& bundle,
                 const std::vector<std::string>& runs, Findings& findings) {
-  const TemporaryFolder scratch;
-  const std::vector<std::size_t> chosen =
-      sample_of(runs.size(), arguments.sample ? static_cast<std::size_t>(*arguments.sample) : runs.size(), bundle.digest());
+  const ScratchFolder scratch;
+  const std::vector<std::size_t> chosen = sample_of(
+      runs.size(), arguments.sample ? static_cast<std::size_t>(*arguments.sample) : runs.size(), bundle.digest());
   const auto file_of = [&](std::size_t run) { return scratch.path() / fmt::format("{}.check", run); };
   if (!compute_jobs(program, chosen, arguments.workers, [&](std::size_t run) {
         write_check(file_of(run), check_run(program, bundle, runs[run], scratch.path() / std::to_string(run),
@@ -87,6 +91,7 @@ bool check_runs(const CommandEnvironment& program, const VerifyArguments& argume
   for (const std::size_t run : chosen) {
     const RunCheck check = read_check(file_of(run));
     ++counts[check.kind];
+    findings.same_build = findings.same_build && check.same_build;
     if (!check.reason.empty()) ++findings.not_repeated[check.reason];
     findings.add(runs[run], check.differences);
   }
@@ -105,7 +110,7 @@ bool check_runs(const CommandEnvironment& program, const VerifyArguments& argume
 /// Makes each result again and compares it.
 void check_results(const CommandEnvironment& program, const UnpackedBundle& bundle, const BundleIndex& index,
                    Findings& findings) {
-  const TemporaryFolder scratch;
+  const ScratchFolder scratch;
   std::vector<fs::path> records;
   for (const std::string& one : index.records) records.push_back(bundle.folder() / one);
   std::size_t equal = 0;
@@ -113,18 +118,18 @@ void check_results(const CommandEnvironment& program, const UnpackedBundle& bund
     const std::string folder = fmt::format("results/{}/", i + 1);
     std::vector<std::string> differences;
     const auto trouble = catch_error([&] {
-      const auto made = result_files(program, result_command(words_text(index.results[i])), records, scratch.path(), false);
+      const auto made = result_files(program, result_command(words_text(index.results[i])), records, scratch.path());
       for (const auto& [name, content] : made) {
         if (bundle.hashes().count(folder + name) == 0) {
           differences.push_back(folder + name + " is missing");
           continue;
         }
-        const auto lines = compare_outputs(read_file(bundle.folder() / (folder + name)), content, folder + name);
+        const auto lines =
+            compare_outputs(read_file(bundle.folder() / (folder + name)), content, folder + name, findings.same_build);
         differences.insert(differences.end(), lines.begin(), lines.end());
       }
       for (const auto& [name, hash] : bundle.hashes()) {
-        const bool is_picture = boost::ends_with(name, ".png");
-        if (boost::starts_with(name, folder) && !is_picture && made.count(name.substr(folder.size())) == 0)
+        if (boost::starts_with(name, folder) && made.count(name.substr(folder.size())) == 0)
           differences.push_back(name + " does not belong to the bundle");
       }
     });

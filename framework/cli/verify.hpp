@@ -25,9 +25,8 @@ struct VerifyArguments {
 PALPATE_WHOLE int verify(CommandEnvironment& program, const VerifyArguments& arguments);
 
 inline void add_verify(CommandLine& line) {
-  auto [command, arguments] =
-      line.add<VerifyArguments>("verify", "Make the runs, tables and figures of a bundle again and compare", verify,
-                                kNeedsEverything);
+  auto [command, arguments] = line.add<VerifyArguments>(
+      "verify", "Make the runs, tables and figures of a bundle again and compare", verify, kNeedsEverything);
   command.argument("BUNDLE", arguments.bundle, "FILE", "archive that 'palpate bundle' wrote", {required()});
   command.argument("--sample", arguments.sample, "N",
                    "repeat only N runs, chosen by the digest of the bundle. All other checks remain", {at_least(1)});

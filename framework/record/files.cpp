@@ -169,7 +169,7 @@ void write_file(const fs::path& file, const std::string& text, bool sync) {
   temporary.publish(sync);
 }
 
-TemporaryFolder::TemporaryFolder() {
+ScratchFolder::ScratchFolder() {
   std::error_code none;
   std::string name = (fs::temp_directory_path(none) / "palpate-XXXXXX").string();
   if (::mkdtemp(name.data()) == nullptr)
@@ -178,7 +178,7 @@ TemporaryFolder::TemporaryFolder() {
   path_ = name;
 }
 
-TemporaryFolder::~TemporaryFolder() {
+ScratchFolder::~ScratchFolder() {
   std::error_code none;
   fs::remove_all(path_, none);
 }

@@ -45,13 +45,13 @@ class TemporaryFile {
 };
 
 /// A new folder of this user among the temporary files of the system (TMPDIR). The destructor removes it.
-class TemporaryFolder {
+class ScratchFolder {
  public:
   /// Throws Error.
-  TemporaryFolder();
-  ~TemporaryFolder();
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+  ScratchFolder();
+  ~ScratchFolder();
+  ScratchFolder(const ScratchFolder&) = delete;
+  ScratchFolder& operator=(const ScratchFolder&) = delete;
 
   const std::filesystem::path& path() const { return path_; }
 
