@@ -2,7 +2,6 @@
 #include "analysis/compare.hpp"
 
 #include "analysis/groups.hpp"
-#include "analysis/mean_output.hpp"
 #include "sweep/results_after_taps.hpp"
 
 #include <palpate/error.hpp>

@@ -4,7 +4,6 @@
 #include "cli/display.hpp"
 #include "cli/output.hpp"
 #include "config/display_units.hpp"
-#include "record/fields.hpp"
 
 #include <palpate/error.hpp>
 

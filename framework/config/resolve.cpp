@@ -4,8 +4,6 @@
 #include "config/map_reader.hpp"
 #include "config/quantity.hpp"
 
-#include <palpate/error.hpp>
-
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "config/yaml.hpp"
 
-#include "reading/read_file.hpp"
-
 #include <palpate/error.hpp>
 
 #include <fmt/format.h>
@@ -16,7 +14,6 @@
 #include <optional>
 #include <sstream>
 #include <utility>
-#include <vector>
 
 namespace palpate {
 namespace {

@@ -23,8 +23,6 @@
 #include <cstring>
 #include <set>
 #include <sstream>
-#include <utility>
-#include <vector>
 
 #include <boost/algorithm/string/split.hpp>
 #include <boost/dll/shared_library.hpp>

@@ -2,7 +2,6 @@
 #include "launch/local_launcher.hpp"
 
 #include "reading/read_file.hpp"
-#include "record/files.hpp"
 
 #include <palpate/error.hpp>
 

@@ -6,7 +6,6 @@
 #include "answers/tap_result_checks.hpp"
 #include "experiment/experiment.hpp"
 #include "module_host.hpp"
-#include "record/fields.hpp"
 #include "record/json.hpp"
 #include "record/run.hpp"
 #include "threads.hpp"

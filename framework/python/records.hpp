@@ -2,7 +2,6 @@
 // Records for Python: a run with its taps and models, and a sweep with its jobs.
 #pragma once
 
-#include "belief/metrics.hpp"
 #include "experiment/experiment.hpp"
 #include "module_host.hpp"
 #include "record/json.hpp"

@@ -2,16 +2,12 @@
 #include "record/fields.hpp"
 
 #include "experiment/unreached.hpp"
-#include "record/files.hpp"
-#include "record/json.hpp"
 #include "record/quantiles.hpp"
 
 #include <fmt/format.h>
 #include <boost/algorithm/string/predicate.hpp>
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <set>
 #include <sstream>
 

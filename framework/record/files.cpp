@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "record/files.hpp"
 
-#include <palpate/error.hpp>
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,7 +8,6 @@
 #include <cstring>
 #include <mutex>
 #include <set>
-#include <utility>
 
 #include <fcntl.h>
 #include <sys/random.h>

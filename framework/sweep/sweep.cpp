@@ -2,7 +2,6 @@
 #include "sweep/sweep.hpp"
 
 #include "config/hash.hpp"
-#include "config/keys.hpp"
 #include "config/yaml.hpp"
 #include "record/files.hpp"
 #include "record/json.hpp"

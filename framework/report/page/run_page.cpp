@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "report/page/run_page.hpp"
 
-#include "config/quantity.hpp"
 #include "config/yaml.hpp"
 #include "record/build_info.hpp"
 #include "record/fields.hpp"
@@ -10,7 +9,6 @@
 #include "record/run_directory.hpp"
 #include "report/colours.hpp"
 #include "report/curves.hpp"
-#include "report/page/json.hpp"
 #include "report/page/page.hpp"
 #include "report/page/warnings.hpp"
 #include "report/words/titles.hpp"

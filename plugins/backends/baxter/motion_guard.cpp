@@ -3,7 +3,6 @@
 
 #include "baxter/error_texts.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <utility>
 

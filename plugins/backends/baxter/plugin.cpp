@@ -7,7 +7,6 @@
 #include "children/arm_lock.hpp"
 
 #include <palpate/belief.hpp>
-#include <palpate/error.hpp>
 #include <palpate/plugin.hpp>
 
 #include <cstdlib>

@@ -3,8 +3,6 @@
 
 #include <Eigen/Geometry>
 
-#include <palpate/math.hpp>
-
 #include <algorithm>
 
 namespace palpate::backends {

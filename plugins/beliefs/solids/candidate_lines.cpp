@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "solids/candidate_lines.hpp"
 
-#include "solids/residual_gp.hpp"
-
 #include <palpate/error.hpp>
 #include <palpate/math.hpp>
 

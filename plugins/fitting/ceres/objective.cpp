@@ -5,7 +5,6 @@
 
 #include <palpate/math.hpp>
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 

@@ -17,7 +17,6 @@
 #include <cstring>
 #include <filesystem>
 #include <memory>
-#include <new>
 #include <sstream>
 #include <string_view>
 #include <utility>
