@@ -24,9 +24,8 @@ struct RandomOutlineOptions : Options {
                               "The wave of the top is not included")
                             .in(Unit::metre)
                             .at_least(0.02));
-    fields.real(roughness, Field("roughness", "roughness of the outline, from 0 (a bent ellipse) to 1 (deep lobes)")
-                               .at_least(0)
-                               .at_most(1));
+    fields.real(roughness,
+                Field("roughness", "roughness of the outline, from 0 (a bent ellipse) to 1 (deep lobes)").within(0, 1));
     fields.integer(
         number,
         Field("number", "index of the outline. The seed of the run and this index determine the outline").at_least(0));

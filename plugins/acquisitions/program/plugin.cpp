@@ -149,8 +149,7 @@ struct ProgramOptions : Options {
                               .not_identifying());
     fields.real(start, Field("start", "time added to the deadline of the program's first scores")
                            .in(Unit::second)
-                           .at_least(0)
-                           .at_most(86400)
+                           .within(0, 86400)
                            .from("an estimate: large libraries take seconds to load")
                            .not_identifying());
   }
