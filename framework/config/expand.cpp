@@ -60,12 +60,7 @@ Bound parse_bound(const std::string& text, const Tree& tree, const std::string& 
 constexpr double kRounding = 1e-9;
 
 /// Rounds to 15 digits, which removes rounding errors of steps: 3 * 0.1 is 0.30000000000000004 and becomes 0.3.
-double as_decimal(double value) {
-  const std::string text = fmt::format("{:.15g}", value);
-  double out = value;
-  if (std::abs(value) < 1e15) std::from_chars(text.data(), text.data() + text.size(), out);
-  return out;
-}
+double as_decimal(double value) { return std::abs(value) < 1e15 ? rounded(value, 15) : value; }
 
 std::vector<Tree> expand_range(const std::vector<Bound>& from, const Tree& tree, const std::string& key,
                                ValueCount& counted) {
@@ -140,6 +135,12 @@ std::optional<ContinuousRange> parse_continuous(const Tree& value, const std::st
   if (!(range.first < range.last) || !std::isfinite(range.last - range.first))
     refuse(value, key, "is not a range", "the first end must be below the last");
   return range;
+}
+
+double rounded(double value, int digits) {
+  const std::string text = fmt::format("{:.{}g}", value, digits);
+  std::from_chars(text.data(), text.data() + text.size(), value);
+  return value;
 }
 
 Tree number(double value, const std::string& unit, const Tree& like) {

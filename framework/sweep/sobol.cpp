@@ -9,8 +9,6 @@
 #include <fmt/format.h>
 #include <boost/random/sobol.hpp>
 
-#include <charconv>
-
 namespace palpate {
 namespace {
 
@@ -21,14 +19,6 @@ ContinuousRange parse_range(const Tree::Entry& entry) {
   if (const auto range = parse_continuous(entry.value, entry.key)) return *range;
   const std::string shown = entry.value.is_scalar() ? "'" + entry.value.text + "'" : "this";
   throw Error(entry.value.place.text(), entry.key + ": " + shown + " is not a continuous range", kContinuousHint);
-}
-
-/// Rounds to nine significant digits, which still distinguish all points.
-double shortened(double value) {
-  const std::string text = fmt::format("{:.9g}", value);
-  double out = value;
-  std::from_chars(text.data(), text.data() + text.size(), out);  // independent of the locale
-  return out;
 }
 
 std::int64_t read_samples(const Tree& described, const SourceLocation& place) {
@@ -88,8 +78,8 @@ std::vector<SweepAxis> sobol_axes(const Tree& described, ValueCount& count) {
     ranges.push_back(parse_range(entry));
   }
   for (const std::vector<double>& point : sobol_points(static_cast<std::size_t>(samples), axes.size(), "sweep.sobol")) {
-    for (std::size_t k = 0; k < axes.size(); ++k)
-      axes[k].values.push_back(number(shortened(ranges[k].at(point[k])), ranges[k].unit, axes[k].written));
+    for (std::size_t k = 0; k < axes.size(); ++k)  // nine digits still distinguish all points
+      axes[k].values.push_back(number(rounded(ranges[k].at(point[k]), 9), ranges[k].unit, axes[k].written));
   }
   return axes;
 }
