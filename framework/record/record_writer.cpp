@@ -3,8 +3,6 @@
 
 #include "record/json.hpp"
 
-#include <palpate/error.hpp>
-
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
@@ -14,11 +12,9 @@
 
 namespace palpate {
 
-namespace fs = std::filesystem;
-
 std::string now_text() { return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::chrono::system_clock::now())); }
 
-RecordWriter::RecordWriter(const fs::path& directory)
+RecordWriter::RecordWriter(const std::filesystem::path& directory)
     : directory_(directory), lock_(make_folder(directory) / kRecordFile) {}
 
 const RunRecord& RecordWriter::before() {

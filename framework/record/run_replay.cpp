@@ -5,14 +5,10 @@
 #include "experiment/unreached.hpp"
 #include "record/fields.hpp"
 
-#include <algorithm>
 #include <array>
 #include <numeric>
-#include <utility>
 
 namespace palpate {
-
-namespace fs = std::filesystem;
 
 /// Replaces the backend of a recorded run. This backend reads the same quantities and rejects the same lines as the
 /// original backend, and makes no taps.
@@ -191,7 +187,7 @@ RunResult RunReplay::result() {
   return out;
 }
 
-ReplayReport replay_run(const RunEnvironment& environment, const fs::path& directory) {
+ReplayReport replay_run(const RunEnvironment& environment, const std::filesystem::path& directory) {
   const RecordedRun run = read_recorded_run(environment.host, directory);
   const auto made = static_cast<int>(run.rows.size());
   RunReplay replay(environment, run);

@@ -11,8 +11,6 @@
 namespace palpate::baxter {
 namespace {
 
-using AllowedAction = Fault::AllowedAction;
-
 constexpr double kLimitMargin = 0.03;      ///< rad: margin of planned joints to their limits
 constexpr double kReachSpacing = 0.02;     ///< m between the positions of a dry run
 constexpr double kPoseError = 0.001;       ///< m: largest position error of the robot's inverse kinematics
@@ -213,7 +211,7 @@ std::optional<Joints> Tapper::inverse(const Pose& tip, const Joints& seed) {
     return arm_.solve(tip, seed, kLimitMargin);
   }
   // Planning needs many poses, and the robot's service may take a second per pose.
-  if (interrupted()) throw Fault{"interrupted", AllowedAction::silence, false};
+  if (interrupted()) throw Fault{"interrupted", Fault::AllowedAction::silence, false};
   const Eigen::Vector3d offset(0.0, 0.0, options_.tool.gripper);
   const std::optional<Joints> answer = robot_.solve(
       {tip.position + tip.rotation * (offset - Eigen::Map<const Eigen::Vector3d>(options_.tool.tip)), tip.rotation},

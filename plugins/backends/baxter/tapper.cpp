@@ -13,7 +13,6 @@ namespace palpate::baxter {
 namespace {
 
 using tapping::centimetres;
-using tapping::newtons;
 using ForceSign = BaxterOptions::ForceSign;
 using AllowedAction = Fault::AllowedAction;
 
@@ -87,7 +86,7 @@ tapping::HeightResult Tapper::tap(const TapRequest& request) {
   contact.seconds = std::max(0.0, robot_.read().now - begin);
   contact.peak_force = peak_;
   const std::string touched =
-      fmt::format("contact at {}, at most {}", centimetres(contact.height), newtons(contact.force));
+      fmt::format("contact at {}, at most {}", centimetres(contact.height), tapping::newtons(contact.force));
   note_(fmt::format("tap {}: {}", request.number, contact.reason.empty() ? touched : contact.reason));
   return contact;
 }
