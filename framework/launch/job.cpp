@@ -61,8 +61,8 @@ JobEnd run_job(const RunEnvironment& environment, const fs::path& directory, con
   refuse_link(directory);
   std::error_code none;
   if (!fs::is_directory(directory, none)) {
-    throw Error(directory.string(), "is missing", "it has no config.yaml: run 'palpate sweep' to restore it",
-                Error::Kind::run);
+    throw Error(directory.string(), "is missing",
+                "it has no config.yaml: repeat 'palpate sweep', or resume the race, to restore it", Error::Kind::run);
   }
   const std::shared_ptr<RunDirectory> held = hold(directory);
   if (!held) return JobEnd::busy;
