@@ -354,12 +354,11 @@ std::string compare_legend(const std::vector<Comparison>& comparisons) {
   const std::vector<std::string>& pairing = first.pairing;
   out += pairing.empty() ? "pair: one job of each group.\n"
                          : fmt::format("pair: two jobs with equal {}.\n", keys_text(pairing));
-  if (first.ratios) {
+  if (first.ratios)
     out += fmt::format(
         "ratio: mean of the first group divided by the mean of the second, over the same pairs; its interval resamples "
         "{}\n(BCa bootstrap). '-': the metric may be negative.\n",
         first.by_seed ? "seeds" : "pairs");
-  }
   out += fmt::format(
       "detectable: true difference that a two-sided paired t test finds at 5 % with 80 % power, with this number of "
       "{}.\np: two-sided Wilcoxon signed-rank test of the differences{}. Equal {} are dropped.\nIt is exact up to {} "

@@ -68,10 +68,9 @@ int pareto(CommandEnvironment&, const ParetoArguments& arguments) {
   const bool asked = arguments.within.has_value();
   const std::optional<double> bound = asked ? std::optional(read_bound(pareto, *arguments.within)) : std::nullopt;
   const Setting* chosen = bound ? cheapest_within(pareto, *bound) : nullptr;
-  if (pareto.unfinished > 0) {
+  if (pareto.unfinished > 0)
     print_message(
         fmt::format("{} of {} jobs have not ended, run them with 'palpate resume'\n", pareto.unfinished, pareto.jobs));
-  }
   asked ? print_message(pareto_table(pareto)) : print_text(pareto_table(pareto));
   // The config is printed first, because writing the files may fail.
   if (chosen != nullptr) print_config(sweep, pareto, *chosen, *bound);

@@ -110,9 +110,8 @@ void print_failures(const Sweep& sweep, const std::vector<FailedJob>& failures) 
     print_out("failed: job {} ({}),{}, attempt {}: {}\n", job.index, job.id, values_text(sweep, job, " "), one.attempts,
               one.reason);
   }
-  if (failures.size() > kMostLines) {
+  if (failures.size() > kMostLines)
     print_out("and {} more failed, results.csv has all reasons\n", failures.size() - kMostLines);
-  }
 }
 
 }  // namespace palpate::cli

@@ -212,10 +212,9 @@ class SlurmLauncher final : public Launcher {
       }
     });
     silent_since_ = !trouble ? std::nullopt : silent_since_ ? silent_since_ : std::optional(begun);
-    if (trouble && Clock::now() - *silent_since_ > kMostSilence) {
+    if (trouble && Clock::now() - *silent_since_ > kMostSilence)
       throw Error("squeue", fmt::format("has not answered for ten minutes: {}", trouble->reason()),
                   "the jobs continue; follow them with 'palpate status'", Error::Kind::run);
-    }
     // With --retry-failed, a failed job keeps its old result until it starts, so only the queue shows whether it has
     // ended.
     const auto ended = std::stable_partition(open_.begin(), open_.end(), [&](std::size_t job) {
@@ -250,10 +249,9 @@ std::string shell_word(const std::string& text) {
 
 void check_sbatch_words(const std::vector<std::string>& words) {
   for (const std::string& word : words) {
-    if (word.size() < 2 || word.front() != '-' || word == "--") {
+    if (word.size() < 2 || word.front() != '-' || word == "--")
       throw Error("command line", fmt::format("--sbatch: '{}' is not an option of sbatch", word),
                   "write for example --sbatch=--mem=4G");
-    }
     const bool is_long = word.compare(0, 2, "--") == 0;
     const std::string name = is_long ? word.substr(0, word.find('=')) : word.substr(0, 2);
     for (const ReservedOption& own : kReservedOptions) {

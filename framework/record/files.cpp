@@ -311,10 +311,9 @@ FileLock::~FileLock() {
 }
 
 void FileLock::check() const {
-  if (owner_ != ::getpid()) {
+  if (owner_ != ::getpid())
     throw Error(file_.parent_path().string(), "is held by the parent of this forked process",
                 "open it in the child after the parent has closed it", Error::Kind::run);
-  }
   struct stat held {
   }, named{};
   if (::fstat(descriptor_.number(), &held) != 0) fail(file_, "cannot be accessed");

@@ -111,10 +111,9 @@ void RecordWriter::add_end(const Ending& ending, bool sync) {
   row.add("reason", ending.reason);
   for (const auto& [name, value] : ending.summary.fields) row.add("summary." + name, value);
   Tree files = Tree::map();
-  for (const Ending::ListedFile& one : ending.files) {
+  for (const Ending::ListedFile& one : ending.files)
     files.at(one.name) =
         Tree::map({{"bytes", Tree::scalar(std::to_string(one.bytes))}, {"hash", Tree::quote(one.hash)}});
-  }
   row.add("files", JsonList{to_json_line(files)});
   check_held();
   log().flush();

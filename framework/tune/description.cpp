@@ -120,10 +120,9 @@ TuneDescription::TuneDescription(const Tree* config, const TuneWords& words)
 
 void TuneDescription::read_keys(ValueCount& count) {
   const Tree* all = written.find("keys");
-  if (all == nullptr || !all->is_map() || all->entries.empty()) {
+  if (all == nullptr || !all->is_map() || all->entries.empty())
     refuse(all != nullptr ? *all : written, ".keys: expects a map of keys to lists or ranges",
            "give KEY=RANGE, for example \"kernel.length_scale=log_uniform(5mm,10cm)\"");
-  }
   for (const Tree::Entry& entry : all->entries) {
     if (const auto range = parse_continuous(entry.value, entry.key)) {
       check_key(entry.key, entry.value, true);
@@ -176,10 +175,9 @@ void TuneDescription::read_metric() {
 void TuneDescription::read_budget() {
   const Tree* runs = written.find("jobs");
   const Tree* time = written.find("time");
-  if ((runs == nullptr) == (time == nullptr)) {
+  if ((runs == nullptr) == (time == nullptr))
     refuse(written, runs == nullptr ? ": no budget is given" : ": 'jobs' and 'time' exclude each other",
            "give one of them: --jobs 400 or --time 10min");
-  }
   if (runs != nullptr) jobs = static_cast<std::size_t>(read_count(*runs, "jobs", 1, kMostJobs));
   if (time != nullptr) {
     seconds = read_quantity(*time, "tune.time", Unit::second);

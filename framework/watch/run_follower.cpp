@@ -108,10 +108,9 @@ void RunFollower::add_times() {
 }
 
 void RunFollower::replay_next_tap() {
-  if (!recording_) {
+  if (!recording_)
     recording_ = std::make_unique<RecordedRun>(
         RecordedRun{directory_, load_run(environment_.host, directory_), {}, {}, {}, manifest_, {}});
-  }
   add_times();
   recording_->taps.push_back(read_taps({pending_.front()}, log_.file()).front());
   recording_->rows.push_back(std::move(pending_.front()));

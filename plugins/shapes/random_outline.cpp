@@ -44,9 +44,8 @@ double between(double low, double high, Random& random) { return low + (high - l
 /// Returns the left, right, lower and upper end of the bounding rectangle of an outline.
 std::array<double, 4> bounds(const Outline& outline) {
   std::array<double, 4> out{kInfinity, -kInfinity, kInfinity, -kInfinity};
-  for (const Point& p : outline) {
+  for (const Point& p : outline)
     out = {std::min(out[0], p[0]), std::max(out[1], p[0]), std::min(out[2], p[1]), std::max(out[3], p[1])};
-  }
   return out;
 }
 

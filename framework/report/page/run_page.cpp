@@ -106,14 +106,13 @@ static void to_json(Json& out, const RunAtTap& moment) {
                    {"source", source_name(moment.next->request.source)},
                    {"score", moment.next->score},
                    {"ties", moment.next->ties}};
-    if (const TapLine& line = moment.next->request.line; !line.from_above) {
+    if (const TapLine& line = moment.next->request.line; !line.from_above)
       out["next"].update({{"z", line.start.z()},
                           {"direction.x", line.direction.x()},
                           {"direction.y", line.direction.y()},
                           {"direction.z", line.direction.z()},
                           {"along", moment.next_along},
                           {"length", line.length}});
-    }
   }
 }
 

@@ -297,11 +297,10 @@ tapping::HeightResult Tapper::accept(const DescentState& way, const tapping::Hei
   rest_from_above(way.column);
   const Eigen::Vector3d moved = force_at_rest(way.at(way.plan.hover)) - way.at_hover;
   const double most = std::max(kLeastZeroChange, 0.5 * way.motion.threshold);
-  if (!(std::abs(moved.z()) < most && moved.head<2>().norm() < options_.force_stop)) {
+  if (!(std::abs(moved.z()) < most && moved.head<2>().norm() < options_.force_stop))
     return failed(Outcome::aborted,
                   "the force did not return to its zero after the tool was clear: its zero moved during the tap, and "
                   "the contact may be false");
-  }
   if (way.moving) learn_moving(*way.moving);
   // Other motions do not measure the height of the onset.
   const bool at_onset = way.motion.type == tapping::MotionOptions::Type::continuous;

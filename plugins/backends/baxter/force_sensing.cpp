@@ -232,9 +232,8 @@ Eigen::Vector3d Tapper::force_at_rest(const Joints& joints) {
     step(joints);
     if (guard_.fresh()) readings.push_back(seen_.endpoint->force);
   }
-  if (!enough()) {
+  if (!enough())
     throw Fault{"endpoint_state is published too rarely to measure the force at rest", Fault::AllowedAction::hold};
-  }
   return median(std::move(readings));
 }
 
