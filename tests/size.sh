@@ -15,34 +15,34 @@ ceilings='
 .ci 0 131
 . 0 199
 framework 0 163 # tune; one file of CMake per library
-framework/analysis 3330 0 # power and importance; tables by one model
-framework/belief 2336 0 # beliefs by an interface
-framework/calibrate 550 0
+framework/analysis 3277 0 # power and importance; tables by one model
+framework/belief 2115 0 # beliefs by an interface
+framework/calibrate 548 0
 framework/cli 3980 60 # tune and power; one file per command, with its arguments
 framework/cmake 0 220 # packages of a cross build
-framework/config 3170 0
+framework/config 3155 0
 framework/experiment 1560 0 # initial design and best score in files of their own
 framework/gp 2580 0 # the offset model; checks of maps for finite numbers
-framework/host 827 0
-framework/include 1125 0 # beliefs as plugins: grids of taps, settings of the run, phases
+framework/host 812 0
+framework/include 1135 0 # beliefs as plugins: grids of taps, settings of the run, phases; normal numbers and closed ranges for all
 framework/launch 990 0 # a cluster continues a race; a table of launchers
 framework/python 750 715 # tune; one file per class of the module; lines of any direction
-framework/record 4641 0
-framework/report 5960 97 # the page of a race; facts of pages are computed in C++
-framework/scene 749 0
+framework/record 4603 0
+framework/report 5919 97 # the page of a race; facts of pages are computed in C++
+framework/scene 739 0
 framework/shared 1392 0 # counts of factorisations for beliefs
 plugins/beliefs 3060 9 # the belief solids
-framework/sweep 1975 0 # rounds; pooled records in files of their own
-framework/tune 1480 0 # the race of palpate tune
-framework/watch 714 0
+framework/sweep 1945 0 # rounds; pooled records in files of their own
+framework/tune 1466 0 # the race of palpate tune
+framework/watch 709 0
 plugins 33 78
-plugins/acquisitions 799 96 # each folder builds itself
+plugins/acquisitions 751 96 # each folder builds itself
 plugins/backends 5905 528 # lines of any direction for programs and records; longer names
 plugins/fitting 953 18 # each folder builds itself
 plugins/footprints 2422 15 # each folder builds itself
 plugins/kernels 547 9 # each folder builds itself
 plugins/programs 520 14 # each folder builds itself
-plugins/shapes 2026 28 # each folder builds itself
+plugins/shapes 1990 28 # each folder builds itself
 plugins/starters 286 28 # a belief without a GP, with a field of its own
 tests 0 2025 # palpate tune; reasons for counts of instructions, campaigns by name, checks of packages for ARM, sizes of classes
 tests/bad_plugins 447 49
@@ -55,9 +55,9 @@ tests/fake_baxter 2425 47
 tests/fuzz 380 0
 tests/python 0 1235 # tune; taps from any side by ask and tell
 tests/report 1301 85
-tests/slurm 515 0 # races
+tests/slurm 540 0 # races, their end and how to stop them
 tests/stability 2435 0
-tests/support 2295 0 # the simulator as a program of the backend process; grids of candidates, which only tests make
+tests/support 2355 0 # the simulator as a program of the backend process; grids of candidates, which only tests make; races
 tests/sweep 5200 0 # races, power, importance
 tests/system 9680 0 # tune; lines of any direction for programs and records; beliefs
 tests/unit 17395 0 # oracles of the footprint: pushes, calibration, enumeration, joint distribution; strategies over other beliefs

@@ -31,10 +31,9 @@ std::string Column::better_words() const {
 Column find_column(const std::string& name, const std::vector<std::string>& columns, const std::string& option) {
   const std::string of_run = field_name(name);
   const RecordField* field = find_summary_field(of_run);
-  if (!is_one_of(columns, name) && !(field != nullptr && is_one_of(columns, of_run))) {
+  if (!is_one_of(columns, name) && !(field != nullptr && is_one_of(columns, of_run)))
     throw Error("command line", fmt::format("{}: results.csv has no column '{}'", option, name),
                 suggestion(name, columns));
-  }
   return {name, unit_of_column(of_run), field != nullptr ? field->better : RecordField::Better::neither};
 }
 
@@ -64,11 +63,10 @@ JobValue value_of_job(const Row* row, const std::string& column, const std::stri
   if (row == nullptr) return {ValueStatus::unfinished};
   if (!is_done(*row)) return {ValueStatus::failed};
   const CellNumber number = number_of(result_of(*row, column));
-  if (number.is_text) {
+  if (number.is_text)
     throw Error("command line",
                 fmt::format("{}: the column '{}' holds {}, not numbers", option, column, row->cell(column)),
                 "name a column of numbers");
-  }
   return number.value ? JobValue{ValueStatus::counted, *number.value} : JobValue{ValueStatus::without_value};
 }
 

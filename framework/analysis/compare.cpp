@@ -2,7 +2,6 @@
 #include "analysis/compare.hpp"
 
 #include "analysis/groups.hpp"
-#include "analysis/mean_output.hpp"
 #include "sweep/results_after_taps.hpp"
 
 #include <palpate/error.hpp>
@@ -269,14 +268,12 @@ void check_values(const Comparison& made, const Sweep& sweep) {
     if (group.mean.count > 0) return;
     without_value += group.counts.of(ValueStatus::without_value);
   }
-  if (made.left_out.all() == made.jobs) {
+  if (made.left_out.all() == made.jobs)
     throw Error("command line", fmt::format("--where: matches none of the {} jobs", made.jobs),
                 "check the values in results.csv, or in the files that --at or --until leave beside it");
-  }
-  if (without_value == 0) {
+  if (without_value == 0)
     throw Error(sweep.directory.string(), "none of the jobs to compare ended well",
                 "see the reasons with 'palpate status'");
-  }
   const RecordField* field = find_summary_field(made.metric.name);
   throw Error("command line", fmt::format("--metric: no job has a value of '{}'", made.metric.name),
               field != nullptr ? field->when_null : "");
@@ -298,9 +295,8 @@ bool Comparison::has_copies() const {
 }
 
 Comparison compare(const Sweep& sweep, const std::vector<Row>& results, const CompareQuery& query) {
-  if (results.empty()) {
+  if (results.empty())
     throw Error(sweep.directory.string(), "no job of this sweep has ended", "run it with 'palpate resume'");
-  }
   check_group_keys(sweep, query.by);
   const Values columns = names_of(results);
   Comparison out;

@@ -145,11 +145,6 @@ std::string ratio_text(const ComparedPair& pair) {
   return with_interval(pair.ratio->ratio, pair.ratio->interval, [](double one) { return fmt::format("{:.3f}", one); });
 }
 
-void store_ratio(Table& table, const std::optional<RatioEstimate>& ratio) {
-  table.store("ratio", ratio ? std::optional(ratio->ratio) : std::nullopt);
-  add_interval(table.last_row(), "ratio_", ratio ? ratio->interval : std::nullopt);
-}
-
 void store_test(Table& table, const ComparedPair& pair) {
   const SignedRank& test = pair.test;
   for (const auto& [name, status] :
@@ -189,7 +184,8 @@ Table pair_table(const Comparison& comparison, const DisplayScale& scale, const 
     table.store("detectable", detectable);
     if (comparison.ratios) {
       table.show("ratio [95 % interval]", ratio_text(pair));
-      store_ratio(table, pair.ratio);
+      table.store("ratio", pair.ratio ? std::optional(pair.ratio->ratio) : std::nullopt);
+      add_interval(table.last_row(), "ratio_", pair.ratio ? pair.ratio->interval : std::nullopt);
     }
     const auto [up, down] = sides(comparison, pair.test);
     table.show(fmt::format("{}/equal/{}", words.up, words.down), fmt::format("{}/{}/{}", up, pair.test.equal, down));
@@ -358,12 +354,11 @@ std::string compare_legend(const std::vector<Comparison>& comparisons) {
   const std::vector<std::string>& pairing = first.pairing;
   out += pairing.empty() ? "pair: one job of each group.\n"
                          : fmt::format("pair: two jobs with equal {}.\n", keys_text(pairing));
-  if (first.ratios) {
+  if (first.ratios)
     out += fmt::format(
         "ratio: mean of the first group divided by the mean of the second, over the same pairs; its interval resamples "
         "{}\n(BCa bootstrap). '-': the metric may be negative.\n",
         first.by_seed ? "seeds" : "pairs");
-  }
   out += fmt::format(
       "detectable: true difference that a two-sided paired t test finds at 5 % with 80 % power, with this number of "
       "{}.\np: two-sided Wilcoxon signed-rank test of the differences{}. Equal {} are dropped.\nIt is exact up to {} "

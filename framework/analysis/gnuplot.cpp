@@ -4,8 +4,6 @@
 #include "children/child_process.hpp"
 #include "record/files.hpp"
 
-#include <fmt/format.h>
-
 #include <cerrno>
 #include <cstring>
 #include <memory>

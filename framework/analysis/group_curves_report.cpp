@@ -79,16 +79,14 @@ std::string curve_remarks(const GroupCurves& curves) {
         {ValueStatus::left_out, ValueStatus::failed, ValueStatus::unfinished, ValueStatus::without_value});
     if (!lost.empty()) out += fmt::format("{}: jobs in no point, of {}: {}\n", name, curve.counts.all(), lost);
     if (curve.points.empty()) continue;
-    if (curve.ended > 0) {
+    if (curve.ended > 0)
       out += fmt::format("{}: {} of {} jobs made fewer taps than others and count afterwards with their final values\n",
                          name, curve.ended, curve.counts.of(ValueStatus::counted));
-    }
     const auto fewer = [](const CurvePoint& a, const CurvePoint& b) { return a.mean.count < b.mean.count; };
     const auto [fewest, most] = std::minmax_element(curve.points.begin(), curve.points.end(), fewer);
-    if (fewest->mean.count < most->mean.count) {
+    if (fewest->mean.count < most->mean.count)
       out += fmt::format("{}: {} to {} jobs have a value, depending on the point of the curve\n", name,
                          fewest->mean.count, most->mean.count);
-    }
   }
   return out + few_words(units_at_points(curves).first, curves.by_seed, kLeastForInterval);
 }

@@ -10,7 +10,6 @@
 
 #include <algorithm>
 #include <iterator>
-#include <map>
 #include <optional>
 
 namespace palpate {
@@ -85,21 +84,18 @@ void check_group_keys(const Sweep& sweep, const std::vector<std::string>& keys) 
       throw Error("command line", "--by: the seed repeats a job and cannot form groups",
                   settings.empty() ? "sweep the key whose values you want to compare" : suggestion(*key, settings));
     }
-    if (!is_one_of(sweep.keys, *key)) {
+    if (!is_one_of(sweep.keys, *key))
       throw Error("command line", fmt::format("--by: this sweep does not vary '{}'", *key),
                   suggestion(*key, setting_keys(sweep)));
-    }
-    if (std::find(keys.begin(), key, *key) != key) {
+    if (std::find(keys.begin(), key, *key) != key)
       throw Error("command line", fmt::format("--by: '{}' is named twice", *key), "name it once");
-    }
   }
 }
 
 Column find_metric(const Sweep& sweep, const std::string& name, const std::vector<std::string>& columns) {
-  if (is_one_of(sweep.keys, name) && (name == "seed" || find_summary_field(name) == nullptr)) {
+  if (is_one_of(sweep.keys, name) && (name == "seed" || find_summary_field(name) == nullptr))
     throw Error("command line", fmt::format("--metric: '{}' is a swept key, not a result", name),
                 name == "seed" ? "name a field of the summary" : "use it with --by");
-  }
   return find_column(name, columns, "--metric");
 }
 

@@ -25,9 +25,8 @@ std::string copies_words(const std::string& name, std::size_t jobs, std::size_t 
 
 std::string few_words(std::size_t units, bool seeds, std::size_t least) {
   if (units >= kEnoughUnits) return {};
-  if (units < least) {
+  if (units < least)
     return fmt::format("only {}: too few for an interval; run {} or more\n", units_words(units, seeds), kEnoughUnits);
-  }
   return fmt::format(
       "only {}: an interval over so few (Student's t) can miss the true mean in more than 5 of 100 cases; run {} or "
       "more\n",

@@ -18,10 +18,9 @@ namespace {
 
 Column make_key(const std::string& name, const std::vector<std::string>& columns, const char* option) {
   Column column = find_column(name, columns, option);
-  if (!can_be_error(column)) {
+  if (!can_be_error(column))
     throw Error("command line", fmt::format("{}: {} is best at 0.95, not at its least or greatest value", option, name),
                 "use nlpd, which rates heights and intervals together");
-  }
   return column;
 }
 
@@ -88,17 +87,15 @@ void number_front(Pareto& pareto) {
 
 Pareto make_pareto(const Sweep& sweep, const std::vector<Row>& results, const std::string& cost,
                    const std::string& error, const WhereCondition* where) {
-  if (results.empty()) {
+  if (results.empty())
     throw Error(sweep.directory.string(), "no job of this sweep has ended", "run it with 'palpate resume'");
-  }
   Pareto pareto;
   const std::vector<std::string> columns = names_of(results);
   pareto.cost = make_key(cost, columns, "--cost");
   pareto.error = make_key(error, columns, "--error");
-  if (!can_be_cost(pareto.cost)) {
+  if (!can_be_cost(pareto.cost))
     throw Error("command line", fmt::format("--cost: more of {} is better, so it is not a cost", cost),
                 "use it with --error");
-  }
   pareto.keys = setting_keys(sweep);
   const StatisticalUnits units(sweep, results);
   pareto.by_seed = units.are_seeds();

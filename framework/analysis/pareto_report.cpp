@@ -176,10 +176,9 @@ std::string pareto_table(const Pareto& pareto) {
       out += copies_words(one.name, one.error.count, one.error.clusters);
     equal = equal || (one.error.clusters > 1 && !one.error.interval) || (one.cost.clusters > 1 && !one.cost.interval);
   }
-  if (equal) {
+  if (equal)
     out += fmt::format("a setting with equal values for all {} has no interval: the values show no spread\n",
                        pareto.by_seed ? "seeds" : "jobs");
-  }
   const bool all_complete =
       std::all_of(pareto.settings.begin(), pareto.settings.end(), [](const Setting& one) { return one.complete(); });
   if (!all_complete) out += "settings with jobs that failed, are missing or have no value are not compared\n";
@@ -261,11 +260,10 @@ std::string pareto_script(const Pareto& pareto, const std::string& title, const 
       "incomplete", incomplete,
       {"1:4:2:3:5:6 with xyerrorbars pt 2 ps 1.3 lc rgb '#b0b0b0' title 'not compared: jobs failed or missing'"});
   script.draw("others", others, {"1:4:2:3:5:6 with xyerrorbars pt 7 ps 1.1 lc rgb '#8fb0cc' title 'dominated'"});
-  if (bound) {
+  if (bound)
     script.plot(fmt::format("{} with lines dt 2 lw 2 lc rgb '{}' title {}", *bound / y.scale.factor, kChosenColour,
                             gnuplot_text((pareto.more_is_better() ? "limit: at least " : "limit: at most ") +
                                          bound_words(pareto, *bound))));
-  }
   draw_fronts(script, pareto, fronts);
   script.draw("choice", choice,
               {fmt::format("1:4 with points pt 7 ps 2.4 lc rgb '{}' title 'cheapest setting whose 95 % bound is within "

@@ -41,9 +41,8 @@ double share_at_most(const std::vector<RankedDifference>& ranked, std::size_t do
   std::vector<double> share(doubled_sum + 1, 0.0);
   share[0] = 1.0;
   for (const RankedDifference& one : ranked) {
-    for (std::size_t sum = doubled_sum + 1; sum-- > 0;) {
+    for (std::size_t sum = doubled_sum + 1; sum-- > 0;)
       share[sum] = 0.5 * (share[sum] + (sum >= one.doubled_rank ? share[sum - one.doubled_rank] : 0.0));
-    }
   }
   return std::accumulate(share.begin(), share.end(), 0.0);
 }

@@ -7,7 +7,6 @@
 #include <fmt/ranges.h>
 #include <boost/algorithm/string/replace.hpp>
 
-#include <algorithm>
 #include <string_view>
 
 namespace palpate {

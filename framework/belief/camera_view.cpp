@@ -134,10 +134,9 @@ std::vector<ViewedSquare> viewed_squares(const PointCloud& points, const PriorOp
   }
   squares.erase(std::remove_if(squares.begin(), squares.end(), [](const Square& one) { return one.count == 0; }),
                 squares.end());
-  if (squares.empty()) {
+  if (squares.empty())
     throw Error("prior.depth", fmt::format("none of its {} points is in the area", points.cols()),
                 "check unit and pose");
-  }
   const double noise = options.noise;
   const double reach = kObjectSigmas * math::hypot(noise, options.bias);
   std::vector<double> desk_heights;

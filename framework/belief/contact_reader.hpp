@@ -10,7 +10,6 @@
 #include <palpate/tap.hpp>
 #include <palpate/types.hpp>
 
-#include <cstddef>
 #include <optional>
 #include <vector>
 

@@ -6,7 +6,6 @@
 #include "gp/candidate_grid.hpp"
 #include "regular/factor_diagnostics.hpp"
 
-#include <palpate/error.hpp>
 #include <palpate/grid.hpp>
 
 #include <fmt/format.h>
@@ -14,7 +13,6 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
-#include <utility>
 
 namespace palpate {
 namespace {

@@ -8,7 +8,6 @@
 #include <palpate/belief.hpp>
 
 #include <optional>
-#include <string>
 #include <string_view>
 #include <vector>
 

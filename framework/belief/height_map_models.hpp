@@ -9,7 +9,6 @@
 #include "belief/gp_model.hpp"
 #include "belief/height_map_options.hpp"
 #include "belief/height_model.hpp"
-#include "belief/metrics.hpp"
 #include "belief/surface_model.hpp"
 #include "gp/candidate_grid.hpp"
 

@@ -35,13 +35,11 @@ void OffsetOptions::list(Fields& fields) {
 void HeightGpOptions::list(Fields& fields) {
   fields.real(signal, Field("signal", "prior standard deviation of the height")
                           .in(Unit::metre)
-                          .at_least(kLeastSignal)
-                          .at_most(kMostSignal)
+                          .within(kLeastSignal, kMostSignal)
                           .from("Sun and Min 2021: unit signal variance"));
-  fields.real(noise, Field("noise", "standard deviation of the height noise of one tap")
-                         .in(Unit::metre)
-                         .at_least(0)
-                         .at_most(kMostSignal));
+  fields.real(
+      noise,
+      Field("noise", "standard deviation of the height noise of one tap").in(Unit::metre).within(0, kMostSignal));
   fields.real(outlier_probability, Field("outlier_probability",
                                          "prior probability that the height of a contact is an outlier; not given: no "
                                          "outliers. Requires `surface: two_part`")
@@ -54,9 +52,8 @@ void HeightGpOptions::list(Fields& fields) {
 }
 
 void LabelGpOptions::list(Fields& fields) {
-  fields.real(signal,
-              Field("signal", "prior standard deviation of the label").at_least(kLeastSignal).at_most(kMostSignal));
-  fields.real(noise, Field("noise", "standard deviation of the noise of one label").at_least(0).at_most(kMostSignal));
+  fields.real(signal, Field("signal", "prior standard deviation of the label").within(kLeastSignal, kMostSignal));
+  fields.real(noise, Field("noise", "standard deviation of the noise of one label").within(0, kMostSignal));
   fields.real(prior_mean, Field("prior_mean", "prior mean of the label").from("Sun and Min 2021: 0"));
   fields.flag(
       clip, Field("clip",
@@ -99,12 +96,10 @@ void EngineOptions::list(Fields& fields) {
               Field("accuracy",
                     "maximum error of the engine that `type: auto` chooses, compared with `dense`. The error is "
                     "relative to the prior standard deviation or variance. The maximum is at most tie_tolerance / 10")
-                  .at_least(0)
-                  .at_most(1));
+                  .within(0, 1));
   fields.integer(threads,
                  Field("threads", "number of threads that update the maps. The number does not change the results")
-                     .at_least(1)
-                     .at_most(64)
+                     .within(1, 64)
                      .not_identifying());
 }
 

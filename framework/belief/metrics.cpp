@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "belief/metrics.hpp"
 
-#include <palpate/error.hpp>
 #include <palpate/math.hpp>
-
-#include <fmt/format.h>
 
 #include <cmath>
 #include <cstdint>

@@ -12,7 +12,6 @@
 
 #include "belief/metrics.hpp"
 
-#include <optional>
 #include <vector>
 
 namespace palpate {

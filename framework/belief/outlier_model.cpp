@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "belief/outlier_model.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 namespace palpate {

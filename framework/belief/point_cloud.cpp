@@ -89,10 +89,9 @@ class PointCloudReader {
     const auto read = std::from_chars(word.data(), word.data() + word.size(), out);
     if (read.ec != std::errc() || read.ptr != word.data() + word.size() || out < 0)
       reject("does not give its number of vertices");
-    if (out > kMostPoints) {
+    if (out > kMostPoints)
       throw Error(file_, fmt::format("has {} points, at most {} are read", out, kMostPoints),
                   "reduce the number of points");
-    }
     return out;
   }
 

@@ -86,11 +86,10 @@ class EffectsCalibration {
       runs_.emplace_back(environment, recording);
       add(runs_.back());
     }
-    if (contacts_.size() < kFewest) {
+    if (contacts_.size() < kFewest)
       throw Error(recordings.front().directory.string(),
                   fmt::format("{} of {} taps are contacts, but {} are needed", contacts_.size(), sums_.taps, kFewest),
                   "make more taps on a scene that stands as in its config: a bare desk, a block");
-    }
     double highest = 0.0;
     for (const CalibrationRun& pair : runs_) highest = std::max(highest, pair.scene->highest() - pair.scene->desk());
     fit_ = fit_contacts(contacts_, highest + kAbove);
@@ -199,10 +198,9 @@ class EffectsCalibration {
       none += shown(pair.made) / static_cast<double>(runs_.size());
       all += shown(pair.rerun.make(with_rate(effect), pair.made.error)) / static_cast<double>(runs_.size());
     }
-    if (all - none < kShown) {
+    if (all - none < kShown)
       return line(effect, "{probability: 0.02}",
                   what + "; the rate is assumed, because these motions hardly reveal it");
-    }
     const auto rate_of = [&](double share) { return std::clamp((share - none) / (all - none), 0.0, 1.0); };
     const IntervalEstimate out{rate_of(seen.value), rate_of(seen.low), rate_of(seen.high)};
     line(effect, fmt::format("{{probability: {:.3g}}}", out.value),

@@ -69,11 +69,10 @@ std::vector<TapRequest> requests_of(const RecordedRun& recording) {
 
 SimulatedRerun::SimulatedRerun(const RunEnvironment& environment, const RecordedRun& recording)
     : environment_(environment), recording_(recording), config_(recording.config.tree) {
-  if (config_.find("motion") == nullptr) {
+  if (config_.find("motion") == nullptr)
     throw Error(recording.directory.string(),
                 "its backend, " + recording.config.options.backend.type + ", has no motion to simulate",
                 "use runs of a backend with a motion: baxter, process, simulator");
-  }
   config_.at("backend") = Tree::map({{"type", Tree::scalar("simulator")}});
   config_.erase("expect");
 }

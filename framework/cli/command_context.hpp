@@ -4,7 +4,6 @@
 #pragma once
 
 #include "config/compose.hpp"
-#include "host/plugin_host.hpp"
 #include "record/run.hpp"
 
 #include <filesystem>

@@ -6,7 +6,6 @@
 #include "cli/display.hpp"
 #include "cli/output.hpp"
 #include "cli/sweep_display.hpp"
-#include "config/catch_error.hpp"
 #include "record/files.hpp"
 #include "record/json.hpp"
 #include "record/resolved_config.hpp"
@@ -19,7 +18,6 @@
 
 #include <algorithm>
 #include <iterator>
-#include <utility>
 
 namespace palpate::cli {
 namespace {

@@ -124,9 +124,8 @@ std::vector<Completion> values_of(const CLI::App& command, const CLI::Option& op
   if (of == "RUN" || of == "SWEEP" || of == "DIR") return records(of);
   if (of == "KIND" || of == "KIND[/NAME]") return plugins_by_kind(program, of != "KIND");
   if (of == "COLUMN" || of == "COLUMNS" || of == "COLUMN=VALUE") {
-    for (const RecordField& field : summary_fields()) {
+    for (const RecordField& field : summary_fields())
       out.push_back({field.name + (of == "COLUMN=VALUE" ? "=" : ""), field.meaning});
-    }
     return of == "COLUMNS" ? after_comma(typed, 0, std::move(out)) : out;
   }
   if (of != "KEY=VALUE" && of != "KEY=VALUES") return {};

@@ -54,10 +54,9 @@ std::string numerics_line(const Row& row) {
 /// there are no such taps.
 std::string relabelled_line(const Row& summary) {
   std::string line;
-  for (const RelabelledContact& one : relabelled_in(summary)) {
+  for (const RelabelledContact& one : relabelled_in(summary))
     line += fmt::format("{}tap {} is on the {} ({} at first)", line.empty() ? "" : ", ", one.tap,
                         one.on_object ? "object" : "desk", one.on_object ? "desk" : "object");
-  }
   return line.empty() ? line : fmt::format("relabelled at the end: {}\n", line);
 }
 
@@ -124,9 +123,7 @@ void print_summary(const RunConclusion& report) {
   const Row& row = report.summary;
   // Erases the live line of the interrupted tap.
   std::string text = report.interrupted && ::isatty(STDOUT_FILENO) != 0 ? std::string(kClearLine) : "";
-  if (report.already_done) {
-    text += fmt::format("already done, not run again: {}\n", report.directory.string());
-  }
+  if (report.already_done) text += fmt::format("already done, not run again: {}\n", report.directory.string());
   for (const std::string& name : report.restored.made) text += fmt::format("rebuilt from the record: {}\n", name);
   for (const std::string& name : report.restored.lost)
     text += fmt::format("{} is missing or damaged, and this build computes a different one from the same taps\n", name);

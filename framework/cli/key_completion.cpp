@@ -183,9 +183,8 @@ std::string purpose_of(const std::filesystem::path& config) {
 
 std::vector<Completion> plugin_names(const CommandEnvironment& program, const std::string& kind) {
   std::vector<Completion> out;
-  for (const std::string& name : program.host.names(kind)) {
+  for (const std::string& name : program.host.names(kind))
     out.push_back({name, purpose_of(program.installation.configs / kind / (name + ".yaml"))});
-  }
   return out;
 }
 
@@ -211,9 +210,8 @@ std::vector<Completion> complete_key(CommandEnvironment& program, const std::str
   if (equals != std::string::npos) {
     const auto field = named(last_key(path));
     if (field == level.end()) return {};
-    for (Completion& one : values(program, std::filesystem::path(config).parent_path(), keys, *field, path)) {
+    for (Completion& one : values(program, std::filesystem::path(config).parent_path(), keys, *field, path))
       out.push_back({path + "=" + one.word, std::move(one.meaning)});
-    }
     return out;
   }
   for (const FieldDescription& field : level) {

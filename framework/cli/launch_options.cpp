@@ -52,10 +52,9 @@ void check_launch(const LaunchArguments& launch) {
     throw Error("command line", fmt::format("{} needs a cluster, but the launcher is '{}'", name, launch.launcher),
                 "add --launcher slurm, or leave it out");
   }
-  if (on_cluster && !launch.junit.empty() && !launch.wait) {
+  if (on_cluster && !launch.junit.empty() && !launch.wait)
     throw Error("command line", "--junit: results exist only after all jobs have ended",
                 "add --wait, or use --junit with 'palpate resume' afterwards");
-  }
   check_junit(launch.junit);
 }
 

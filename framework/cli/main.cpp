@@ -22,9 +22,8 @@ namespace {
 /// Prints the completions of the last of `words`, one per line.
 int print_completions(CommandLine& line, CommandEnvironment& program, std::vector<std::string> words) {
   if (words.empty()) words.emplace_back();
-  for (const Completion& one : completions(line.app(), program, words)) {
+  for (const Completion& one : completions(line.app(), program, words))
     print_data(fmt::format("{}\t{}\n", one.word, one.meaning));
-  }
   return kDone;
 }
 

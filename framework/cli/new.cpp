@@ -46,18 +46,15 @@ struct NewArguments {
 void check_new(const CommandEnvironment& program, const NewArguments& arguments) {
   const auto& [kind, name, python] = arguments;
   const std::vector<std::string> kinds = PluginHost::kinds();
-  if (std::find(kinds.begin(), kinds.end(), kind) == kinds.end()) {
+  if (std::find(kinds.begin(), kinds.end(), kind) == kinds.end())
     throw Error("", fmt::format("there is no plugin kind '{}'", kind), suggestion(kind, kinds));
-  }
   if (!is_name(name)) throw Error("", fmt::format("'{}' is not a valid name of a plugin", name), kNameHint);
   const std::vector<std::string> taken = program.host.names(kind);
-  if (std::find(taken.begin(), taken.end(), name) != taken.end()) {
+  if (std::find(taken.begin(), taken.end(), name) != taken.end())
     throw Error("", fmt::format("there is a plugin {}/{} already", kind, name), "choose another name");
-  }
-  if (python && kind != Acquisition::kKind) {
+  if (python && kind != Acquisition::kKind)
     throw Error("command line", fmt::format("--python: a plugin of the kind {} cannot be a function of Python", kind),
                 "leave --python out; only an acquisition can be one");
-  }
   if (python && (name.find('-') != std::string::npos || std::isdigit(static_cast<unsigned char>(name.front())) != 0))
     throw Error("", fmt::format("'{}' is not a valid name of a Python module", name),
                 "use letters, digits and _, starting with a letter");
@@ -75,10 +72,9 @@ void copy_starter(const NewArguments& arguments, const fs::path& from, const std
 }
 
 void create_python(const Installation& installation, const NewArguments& arguments, const fs::path& starters) {
-  for (const char* const file : {"starter.py", "test_starter.py", "starter.yaml"}) {
+  for (const char* const file : {"starter.py", "test_starter.py", "starter.yaml"})
     copy_starter(arguments, starters / "python" / file,
                  boost::replace_all_copy(std::string(file), "starter", arguments.name));
-  }
   // The test needs its own copy of this module, because `palpate` does not start the test and cannot provide the
   // module.
   const std::string module = "palpate_acquisition.py";
@@ -99,9 +95,8 @@ int new_plugin(CommandEnvironment& program, const NewArguments& arguments) {
   const auto& [kind, name, python] = arguments;
   const fs::path starters = program.installation.configs.parent_path() / "plugins" / "starters";
   std::error_code trouble;
-  if (!fs::create_directory(name, trouble)) {
+  if (!fs::create_directory(name, trouble))
     throw Error(name, trouble ? "cannot be made: " + trouble.message() : "exists already", "choose another name");
-  }
   if (python) return create_python(program.installation, arguments, starters), kDone;
   copy_starter(arguments, starters / "CMakeLists.txt", "CMakeLists.txt");
   copy_starter(arguments, starters / kind / "starter.cpp", name + ".cpp");

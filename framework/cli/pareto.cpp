@@ -20,24 +20,19 @@
 namespace palpate::cli {
 namespace {
 
-namespace fs = std::filesystem;
-
-std::string title_of(const std::string& name, const Pareto& pareto) {
-  return fmt::format("{}: {} settings, {} each; bars: 95 % intervals of the means", name, pareto.settings.size(),
-                     seeds_words(pareto));
-}
-
 /// Writes the picture and the table into the folder of results.csv.
 void write_files(const Sweep& sweep, const Pareto& pareto, const std::string& name, const std::string& where,
                  const std::optional<double>& bound, const Setting* chosen) {
-  const fs::path stem = sweep.directory / fmt::format("pareto_{}_{}{}", slug(pareto.cost.name), slug(pareto.error.name),
-                                                      where_suffix(where));
+  const std::filesystem::path stem = sweep.directory / fmt::format("pareto_{}_{}{}", slug(pareto.cost.name),
+                                                                   slug(pareto.error.name), where_suffix(where));
   write_file(stem.string() + ".csv", to_csv(pareto_rows(pareto)));
   const bool empty = std::all_of(pareto.settings.begin(), pareto.settings.end(),
                                  [](const Setting& one) { return one.cost.count == 0; });
+  const std::string title = fmt::format("{}: {} settings, {} each; bars: 95 % intervals of the means", name,
+                                        pareto.settings.size(), seeds_words(pareto));
   const std::string trouble = empty ? "no setting has a value"
-                                    : draw_picture(pareto_script(pareto, title_of(name, pareto), bound, chosen),
-                                                   kParetoWidth, kParetoHeight, stem.string() + ".png");
+                                    : draw_picture(pareto_script(pareto, title, bound, chosen), kParetoWidth,
+                                                   kParetoHeight, stem.string() + ".png");
   if (trouble.empty()) {
     print_message(fmt::format("picture: {0}.png, table: {0}.csv\n", stem.string()));
   } else {
@@ -73,10 +68,9 @@ int pareto(CommandEnvironment&, const ParetoArguments& arguments) {
   const bool asked = arguments.within.has_value();
   const std::optional<double> bound = asked ? std::optional(read_bound(pareto, *arguments.within)) : std::nullopt;
   const Setting* chosen = bound ? cheapest_within(pareto, *bound) : nullptr;
-  if (pareto.unfinished > 0) {
+  if (pareto.unfinished > 0)
     print_message(
         fmt::format("{} of {} jobs have not ended, run them with 'palpate resume'\n", pareto.unfinished, pareto.jobs));
-  }
   asked ? print_message(pareto_table(pareto)) : print_text(pareto_table(pareto));
   // The config is printed first, because writing the files may fail.
   if (chosen != nullptr) print_config(sweep, pareto, *chosen, *bound);

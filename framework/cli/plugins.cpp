@@ -53,9 +53,8 @@ int plugins(CommandEnvironment& program, const PluginsArguments& arguments) {
   const std::string kind = what.substr(0, slash);
   const std::string name = slash == std::string::npos ? std::string() : what.substr(slash + 1);
   const std::vector<std::string> kinds = PluginHost::kinds();
-  if (!kind.empty() && std::find(kinds.begin(), kinds.end(), kind) == kinds.end()) {
+  if (!kind.empty() && std::find(kinds.begin(), kinds.end(), kind) == kinds.end())
     throw Error("", fmt::format("there is no plugin kind '{}'", kind), suggestion(kind, kinds));
-  }
   const std::vector<PluginListing> rows = program.host.list(kind, name);
   // For a plugin that does not exist, describe() throws an error that suggests similar names.
   if (!name.empty() && rows.empty())

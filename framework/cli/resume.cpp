@@ -15,14 +15,12 @@ namespace {
 int resume(CommandEnvironment& program, const ResumeArguments& arguments) {
   check_launch(arguments.launch);
   if (is_sweep(arguments.directory)) return call_in_whole(resume_sweep, program, arguments);
-  if (!arguments.jobs.empty()) {
+  if (!arguments.jobs.empty())
     throw Error("command line", "--jobs: " + arguments.directory + " is not a sweep", "leave it out");
-  }
-  if (arguments.launch.launcher != kLaunchers.front()) {
+  if (arguments.launch.launcher != kLaunchers.front())
     throw Error("command line",
                 fmt::format("--launcher {}: {} is not a sweep", arguments.launch.launcher, arguments.directory),
                 "leave it out");
-  }
   const ResolvedConfig config = load_run(program.host, arguments.directory);
   RunOutput output{!arguments.launch.quiet, false, arguments.launch.junit, arguments.step};
   if (arguments.launch.watch) output.watched = arguments.directory;

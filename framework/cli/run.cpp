@@ -51,9 +51,8 @@ void print_origins(const std::vector<Composer::Group>& groups, const ResolvedCon
     width = std::max(width, lines.back().first.size());
   }
   for (const auto& [text, place] : lines) print_out("{:<{}}  # {}\n", text, width, place);
-  for (const ResolveNotes::Origin& one : config.notes.dropped) {
+  for (const ResolveNotes::Origin& one : config.notes.dropped)
     print_out("# dropped: {} from {}, the type chosen later has no such option\n", one.path, one.place);
-  }
 }
 
 /// Returns a clearer error if `trouble` is about an override that gives a key several values, which only `palpate

@@ -27,16 +27,14 @@ int status(CommandEnvironment& program, const StatusArguments& arguments) {
   const std::string reason = status.stop_reason.empty() ? "" : ": " + status.stop_reason;
   print_out("{}: {} after {} of {} taps{}\n", text_at("name"), state_name(status.state), status.taps, text_at("taps"),
             reason);
-  if (status.expected_rmse) {
+  if (status.expected_rmse)
     print_out("expected error: {} over the scene{}\n", usual_scale(Unit::metre).quantity(*status.expected_rmse),
               status.state == RunStatus::State::done ? "" : ", before the last tap");
-  }
-  if (status.cut) {
+  if (status.cut)
     print_message(
         (std::filesystem::path(directory) / kRecordFile).string() +
         ": was cut short, because summary.json says that the run had ended; 'palpate resume' repeats the missing "
         "part\n");
-  }
   return kDone;
 }
 

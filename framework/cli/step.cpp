@@ -4,7 +4,6 @@
 #include "cli/display.hpp"
 #include "cli/output.hpp"
 #include "config/display_units.hpp"
-#include "record/fields.hpp"
 
 #include <palpate/error.hpp>
 
@@ -31,10 +30,9 @@ std::string who_chose(const TapRecord& tap) {
 std::unique_ptr<TapConfirmation> TapConfirmation::when(bool wanted, const ExperimentOptions& options,
                                                        const std::atomic<bool>* stopped) {
   if (!wanted) return nullptr;
-  if (::isatty(STDIN_FILENO) == 0 || ::isatty(STDERR_FILENO) == 0) {
+  if (::isatty(STDIN_FILENO) == 0 || ::isatty(STDERR_FILENO) == 0)
     throw Error("command line", "--step: needs a terminal to show each tap and to wait for Enter",
                 "connect stdin and stderr to a terminal");
-  }
   return std::unique_ptr<TapConfirmation>(new TapConfirmation(options, stopped));
 }
 
@@ -47,10 +45,9 @@ bool TapConfirmation::permits(const TapRecord& tap, const Experiment& experiment
   std::string text =
       fmt::format("tap {} of {} at ({}, {}) {}, {}", tap.number(), budget_, places.number(tap.target().x),
                   places.number(tap.target().y), places.unit, who_chose(tap));
-  if (const std::optional<Prediction>& expected = preview.expected) {
+  if (const std::optional<Prediction>& expected = preview.expected)
     text += fmt::format("; expected height{} {} +- {} {}", two_part_ ? " of an object there" : "",
                         places.number(expected->height), places.number(expected->standard_deviation), places.unit);
-  }
   for (const std::string& line : preview.motion) text += "\n      " + line;
   flush_output();
   ::tcflush(STDIN_FILENO, TCIFLUSH);

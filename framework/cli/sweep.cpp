@@ -10,7 +10,6 @@
 #include "cli/sweep_display.hpp"
 #include "cli/sweep_execution.hpp"
 #include "cli/tune.hpp"
-#include "config/catch_error.hpp"
 #include "launch/job.hpp"
 #include "record/files.hpp"
 #include "record/run.hpp"
@@ -177,7 +176,8 @@ int resume_sweep(CommandEnvironment& program, const ResumeArguments& arguments) 
   const auto refuse = [](const std::string& reason, const char* hint) { throw Error("command line", reason, hint); };
   if (arguments.step) refuse("--step: " + arguments.directory + " is a sweep of many runs", "leave it out");
   const Sweep sweep = read_sweep(arguments.directory);
-  if (!sweep.rounds.empty() && arguments.jobs.empty()) return resume_race(program, arguments);
+  if (!sweep.rounds.empty() && arguments.jobs.empty())
+    return run_race(program, arguments.directory, arguments.launch, arguments.options);
   SweepExecution execution{program, sweep, arguments.options, arguments.launch, {}, false};
   if (!arguments.jobs.empty()) {
     execution.only = parse_jobs(arguments.jobs, sweep.jobs.size());

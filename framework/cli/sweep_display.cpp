@@ -13,7 +13,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string>
 
 #include <unistd.h>
 
@@ -41,7 +40,7 @@ SweepLine::SweepLine(bool quiet)
       begun_(std::chrono::steady_clock::now()),
       shown_(begun_) {}
 
-void SweepLine::show(const SweepProgress& progress) {
+void SweepLine::show(const SweepProgress& progress, std::string line) {
   if (quiet_ || progress.jobs == 0) return;
   const auto now = std::chrono::steady_clock::now();
   const int ended = progress.done + progress.failed;
@@ -54,8 +53,9 @@ void SweepLine::show(const SweepProgress& progress) {
   tenth_ = tenth;
   running_ = progress.running;
   shown_ = now;
-  std::string line = fmt::format("{} of {} jobs done, {} running, {} failed", progress.done, progress.jobs,
-                                 progress.running, progress.failed);
+  if (line.empty())
+    line = fmt::format("{} of {} jobs done, {} running, {} failed", progress.done, progress.jobs, progress.running,
+                       progress.failed);
   const double seconds = std::chrono::duration<double>(now - begun_).count();
   const int here = ended - progress.before;
   if (here > 0 && seconds > 0.0) {
@@ -110,9 +110,8 @@ void print_failures(const Sweep& sweep, const std::vector<FailedJob>& failures) 
     print_out("failed: job {} ({}),{}, attempt {}: {}\n", job.index, job.id, values_text(sweep, job, " "), one.attempts,
               one.reason);
   }
-  if (failures.size() > kMostLines) {
+  if (failures.size() > kMostLines)
     print_out("and {} more failed, results.csv has all reasons\n", failures.size() - kMostLines);
-  }
 }
 
 }  // namespace palpate::cli

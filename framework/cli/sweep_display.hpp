@@ -21,7 +21,8 @@ namespace palpate::cli {
 class SweepLine {
  public:
   explicit SweepLine(bool quiet);
-  void show(const SweepProgress& progress);
+  /// `line`: text in place of the numbers of done, running and failed jobs; "": none.
+  void show(const SweepProgress& progress, std::string line = {});
 
  private:
   bool quiet_;

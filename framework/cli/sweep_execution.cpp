@@ -99,9 +99,8 @@ void begin_execution(const SweepExecution& execution) {
   listen_for_interrupts();
   outlive_reader();
   set_record_line("resume with: palpate resume " + directory.string());
-  if (execution.one_at_a_time && execution.sweep.jobs.size() > 1 && !execution.launch.quiet) {
+  if (execution.one_at_a_time && execution.sweep.jobs.size() > 1 && !execution.launch.quiet)
     print_message("jobs run one at a time, because the backend moves only one arm\n");
-  }
   if (execution.launch.watch) start_watcher(execution.program, directory);
 }
 

@@ -4,14 +4,11 @@
 #include "cli/display.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/output.hpp"
-#include "cli/resume.hpp"
 #include "cli/sweep_display.hpp"
 #include "cli/sweep_execution.hpp"
-#include "config/yaml.hpp"
 #include "launch/job.hpp"
 #include "launch/parallel_children.hpp"
 #include "record/files.hpp"
-#include "report/words/words.hpp"
 #include "sweep/draft.hpp"
 #include "tune/race_report.hpp"
 #include "tune/tuner.hpp"
@@ -22,11 +19,8 @@
 #include <boost/algorithm/string/replace.hpp>
 
 #include <chrono>
+#include <cstdlib>
 #include <filesystem>
-#include <optional>
-#include <utility>
-
-#include <unistd.h>
 
 namespace palpate::cli {
 namespace {
@@ -42,19 +36,16 @@ double seconds_since(Clock::time_point begin) { return std::chrono::duration<dou
 
 TuneWords words_of(const TuneArguments& arguments) {
   TuneWords out{arguments.keys, arguments.scenes, {}};
-  const auto set = [&](const char* name, const std::optional<std::string>& text) {
-    if (text) out.settings.emplace_back(name, *text);
-  };
-  const auto count = [](const std::optional<int>& number) {
-    return number ? std::optional(std::to_string(*number)) : std::nullopt;
+  const auto set = [&](const char* name, const auto& value) {
+    if (value) out.settings.emplace_back(name, fmt::format("{}", *value));
   };
   set("metric", arguments.metric);
   set("cost", arguments.cost);
-  set("jobs", count(arguments.jobs));
+  set("jobs", arguments.jobs);
   set("time", arguments.time);
   set("within", arguments.within);
-  set("fresh", count(arguments.fresh));
-  if (arguments.where) set("where", "'" + boost::replace_all_copy(*arguments.where, "'", "''") + "'");
+  set("fresh", arguments.fresh);
+  if (arguments.where) set("where", std::optional("'" + boost::replace_all_copy(*arguments.where, "'", "''") + "'"));
   return out;
 }
 
@@ -91,25 +82,17 @@ std::size_t budget_of(const TuneDescription& description, std::size_t jobs, doub
   return static_cast<std::size_t>(std::min(all, kMostJobs));
 }
 
-/// Prints the state of the race on stderr: on a terminal in place, elsewhere once per tenth of the budget.
-class RaceLine {
- public:
-  explicit RaceLine(bool quiet) : quiet_(quiet), terminal_(::isatty(STDERR_FILENO) != 0) {}
-  void show(const RaceRecord& race) {
-    const std::size_t budget = race.state.budget;
-    const std::size_t tenth = 10 * race.race_jobs / std::max<std::size_t>(budget, 1);
-    if (quiet_ || (!terminal_ && tenth == tenth_ && !race.has_ended())) return;
-    tenth_ = tenth;
-    const std::string line = fmt::format("{} of {} runs, {} of {} settings in the race, on {} seeds", race.race_jobs,
-                                         budget, race.state.racing.size(), race.settings.size(), race.state.seeds);
-    print_message((terminal_ ? std::string(kClearLine) : "") + line + (terminal_ && !race.has_ended() ? "" : "\n"));
-  }
-
- private:
-  bool quiet_;
-  bool terminal_;
-  std::size_t tenth_ = 11;
-};
+/// Shows the state of the race, without a rate: the race may end before its budget is used.
+void show_race(SweepLine& line, const RaceRecord& race) {
+  SweepProgress progress;
+  progress.jobs = static_cast<int>(race.state.budget);
+  progress.done = static_cast<int>(race.race_jobs);
+  progress.running = 1;
+  progress.before = progress.done;
+  progress.last = race.has_ended();
+  line.show(progress, fmt::format("{} of {} runs, {} of {} settings in the race, on {} seeds", race.race_jobs,
+                                  race.state.budget, race.state.racing.size(), race.settings.size(), race.state.seeds));
+}
 
 /// Throws Error for options of the launch that a race does not take.
 void check_race_launch(const TuneDescription& description, const LaunchArguments& launch) {
@@ -137,6 +120,19 @@ std::vector<std::string> next_command(const fs::path& directory, const LaunchArg
   return out;
 }
 
+/// Throws Error if a cluster executes this process after jobs of which none has ended, because it would submit them
+/// forever.
+void check_progress(const Sweep& sweep, const JobStates& begun) {
+  const char* const before = std::getenv(kEndedJobs);
+  if (before == nullptr || begun.open.empty() ||
+      sweep.jobs.size() - begun.open.size() > std::strtoull(before, nullptr, 10))
+    return;
+  const std::string directory = fs::absolute(sweep.directory).string();
+  throw Error(directory, "no job of the last submission has ended, so the race stops",
+              fmt::format("read the logs in its folder slurm, then run: palpate resume {} --launcher slurm", directory),
+              Error::Kind::run);
+}
+
 /// Prints the results, and writes results.csv, race.csv and best.yaml.
 void print_race(const RaceResults& results) {
   const fs::path& directory = results.sweep.directory;
@@ -150,7 +146,8 @@ void print_race(const RaceResults& results) {
   }
 }
 
-/// Runs the rounds of a race until it ends. Returns the exit status.
+}  // namespace
+
 int run_race(CommandEnvironment& program, const fs::path& directory, const LaunchArguments& launch,
              const ResumeOptions& options) {
   const Tree config = read_run_config(directory);
@@ -158,16 +155,18 @@ int run_race(CommandEnvironment& program, const fs::path& directory, const Launc
   const TunePlanner planner(program.composer, program.host, directory / "config.yaml", description);
   check_race_launch(description, launch);
   RaceValues values;
-  RaceLine line(launch.quiet);
+  SweepLine line(launch.quiet);
   LaunchArguments silent = launch;
-  silent.quiet = true;  // RaceLine shows the progress
+  silent.quiet = true;  // The line shows the race, not the jobs of a round.
   bool has_begun = false;
-  double before = read_race(read_sweep(directory), description).seconds;
+  const Sweep recorded = read_sweep(directory);
+  const RaceRecord before = read_race(recorded, description);
+  replace_lost(planner, recorded, before);
   const Clock::time_point begin = Clock::now();
   for (;;) {
     const Sweep sweep = read_sweep(directory);
     const RaceRecord race = read_race(sweep, description);
-    line.show(race);
+    show_race(line, race);
     const bool one_at_a_time = program.host.one_at_a_time(planner.own().notes.plugins);
     SweepExecution execution{program, sweep,         options, silent,
                              {},      one_at_a_time, {},      next_command(directory, launch, options)};
@@ -177,6 +176,7 @@ int run_race(CommandEnvironment& program, const fs::path& directory, const Launc
     if (!has_begun) {
       check_builds(execution, jobs_not_done(begun));
       begin_execution(execution);
+      check_progress(sweep, begun);
     }
     if (options.retry_failed && !has_begun) reopen_failed(begun);
     has_begun = true;
@@ -188,7 +188,7 @@ int run_race(CommandEnvironment& program, const fs::path& directory, const Launc
       print_out("resume with: palpate resume {}\n", directory.string());
       return program.interrupted->load() ? kInterrupted : kFailed;
     }
-    const double seconds = before + seconds_since(begin);
+    const double seconds = before.seconds + seconds_since(begin);
     if (add_round(planner, directory, sweep.rounds.size(), budget_of(description, race.race_jobs, seconds), seconds,
                   values))
       continue;
@@ -198,8 +198,6 @@ int run_race(CommandEnvironment& program, const fs::path& directory, const Launc
     return kDone;
   }
 }
-
-}  // namespace
 
 int tune(CommandEnvironment& program, const TuneArguments& arguments) {
   check_launch(arguments.launch);
@@ -244,13 +242,6 @@ std::size_t check_tune(CommandEnvironment& program, const std::string& config) {
   const auto ignore = [](const Job&, const ResolvedConfig&) {};
   return plan_first_round(planner, description.jobs.value_or(kJobsOfTime), "runs", ignore).sweep.jobs.size() /
          kFirstSeeds;
-}
-
-int resume_race(CommandEnvironment& program, const ResumeArguments& arguments) {
-  checked_launcher(arguments.launch);
-  if (arguments.step)
-    throw Error("command line", "--step: " + arguments.directory + " is a race of many runs", "leave it out");
-  return run_race(program, arguments.directory, arguments.launch, arguments.options);
 }
 
 }  // namespace palpate::cli

@@ -6,13 +6,12 @@
 #include "cli/launch_options.hpp"
 
 #include <cstddef>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace palpate::cli {
-
-struct ResumeArguments;
 
 struct TuneArguments {
   std::string config;
@@ -25,8 +24,9 @@ struct TuneArguments {
 };
 PALPATE_WHOLE int tune(CommandEnvironment& program, const TuneArguments& arguments);
 
-/// Continues the race in the directory of a sweep with rounds. Returns the exit status.
-PALPATE_WHOLE int resume_race(CommandEnvironment& program, const ResumeArguments& arguments);
+/// Runs the rounds of the race in `directory` until it ends. Returns the exit status.
+int run_race(CommandEnvironment& program, const std::filesystem::path& directory, const LaunchArguments& launch,
+             const ResumeOptions& options);
 
 /// Checks the block `tune:` of the file `config`. Returns the number of settings of its first round. Throws Error.
 PALPATE_WHOLE std::size_t check_tune(CommandEnvironment& program, const std::string& config);

@@ -72,12 +72,10 @@ std::vector<Section> sections_of(const CLI::App& app) {
     if (out.empty() || out.back().heading != heading) out.push_back({heading, {}});
     out.back().entries.emplace_back(term, meaning);
   };
-  for (const CLI::App* command : app.get_subcommands({})) {
+  for (const CLI::App* command : app.get_subcommands({}))
     add("Commands", command->get_name(), command->get_description());
-  }
-  for (const CLI::Option* one : arguments_of(app)) {
+  for (const CLI::Option* one : arguments_of(app))
     add(one->get_positional() ? "Arguments" : one->get_group(), head_of(*one), meaning_of(*one));
-  }
   return out;
 }
 
@@ -118,9 +116,8 @@ std::string manual_page(const CLI::App& app, const std::string& name) {
   if (whole) out += fmt::format(".SH DESCRIPTION\n{}\n", roff(app.get_description()));
   for (const Section& section : sections_of(app)) {
     out += fmt::format(".SH {}\n", roff(boost::to_upper_copy(section.heading)));
-    for (const auto& [term, meaning] : section.entries) {
+    for (const auto& [term, meaning] : section.entries)
       out += fmt::format(".TP\n.B {}\n{}\n", roff(term), roff(meaning));
-    }
   }
   out += fmt::format(".SH EXAMPLES\n.EX\n{}\n.EE\n", roff(app.get_footer()));
   std::vector<std::string> others;

@@ -20,11 +20,10 @@ int watch(CommandEnvironment& program, const WatchArguments& arguments) {
   ::setpriority(PRIO_PROCESS, 0, is_sweep(arguments.directory) ? 10 : 19);
   Site site(program, arguments.directory);
   Server server(site, {arguments.bind, arguments.port, arguments.until_left ? kIdleSeconds : 0});
-  if (server.is_open_to_others()) {
+  if (server.is_open_to_others())
     print_message(fmt::format(
         "watch: anyone who can reach {} and has this address can see the run; the connection is not encrypted\n",
         arguments.bind));
-  }
   print_text(server.url() + "\n");
   flush_output();
   server.run();

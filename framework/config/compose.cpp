@@ -95,12 +95,11 @@ void mark_complete(Tree& config) {
   if (complete == nullptr) return;
   std::int64_t number = 0;
   catch_error([&] { number = read_integer(*complete, "complete"); });  // resolve() reports an invalid value later
-  if (number > kRecordVersion) {
+  if (number > kRecordVersion)
     throw Error(
         complete->place.text(),
         fmt::format("complete: {} is newer than {}, the latest version that this build reads", number, kRecordVersion),
         "use a palpate at least as new as the one that wrote it");
-  }
   for_all(config, [](Tree& one) { one.complete = one.is_map(); });
 }
 
@@ -154,10 +153,9 @@ void Composer::lay_bases(Tree& content, const std::string& group, const std::vec
                          const fs::path& beside, std::vector<std::string>& chain) {
   for (std::size_t i = 0; i < bases.size(); ++i) {
     const Choice& base = bases[i];
-    if (base.path != group) {
+    if (base.path != group)
       throw Error(base.value.place.text(), fmt::format("a {} may build only on another {}", group, group),
                   fmt::format("write '- {}: name'", group));
-    }
     Tree below = base_content(group, base.value, beside, chain);
     below.shift_layer(static_cast<int>(i) - static_cast<int>(bases.size()));
     content.merge(below);
@@ -168,15 +166,13 @@ void Composer::lay_group_file(Tree& content, const std::string& group, const Tre
   const std::string beside_group = keys_.beside(group);
   for (const Tree::Entry& entry : own.entries) {
     const bool is_beside = !beside_group.empty() && entry.key == beside_group;
-    if (entry.key != group && !is_beside) {
+    if (entry.key != group && !is_beside)
       throw Error(entry.place.text(), fmt::format("unknown key '{}'", entry.key),
                   fmt::format("a file in {}/ holds only '{}:'{}", group, group,
                               beside_group.empty() ? "" : fmt::format(" and '{}:'", beside_group)));
-    }
-    if (!entry.value.is_map()) {
+    if (!entry.value.is_map())
       throw Error(entry.place.text(), fmt::format("'{}' is not a group of options", entry.key),
                   is_beside ? "write key: value below it, a name is not accepted here" : "write key: value below it");
-    }
     if (is_beside) {
       Tree& slot = content.at(beside_group);
       if (slot.kind == Tree::Kind::null) slot = Tree::map();
@@ -212,18 +208,15 @@ std::vector<Composer::Choice> Composer::take_defaults(Tree& own) const {
     }
     return choices;
   }
-  if (defaults->kind != Tree::Kind::list) {
+  if (defaults->kind != Tree::Kind::list)
     throw Error(defaults->place.text(), "defaults: expects a list", "write '- kernel: rbf', one group per line");
-  }
   for (const Tree& item : defaults->items) {
-    if (!item.is_map() || item.entries.size() != 1 || !item.entries.front().value.is_scalar()) {
+    if (!item.is_map() || item.entries.size() != 1 || !item.entries.front().value.is_scalar())
       throw Error(item.place.text(), "defaults: expects '- group: name'", "for example '- kernel: rbf'");
-    }
     const Tree::Entry& entry = item.entries.front();
-    if (!keys_.is_group(entry.key)) {
+    if (!keys_.is_group(entry.key))
       throw Error(entry.place.text(), fmt::format("unknown group '{}'", entry.key),
                   suggestion(entry.key, keys_.groups()));
-    }
     choices.push_back({entry.key, entry.value});
     choices.back().value.layer = kGroupLayer;
   }

@@ -50,9 +50,8 @@ std::vector<std::string> split_top(const std::string& text) {
 Bound parse_bound(const std::string& text, const Tree& tree, const std::string& key, const std::string& how_to) {
   Bound out{0.0, {}};
   const auto result = std::from_chars(text.data(), text.data() + text.size(), out.value);
-  if (result.ec != std::errc() || !std::isfinite(out.value)) {
+  if (result.ec != std::errc() || !std::isfinite(out.value))
     throw Error(tree.place.text(), fmt::format("{}: '{}' in '{}' is not a number", key, text, tree.text), how_to);
-  }
   out.unit = boost::trim_copy(std::string(result.ptr, text.data() + text.size()));
   return out;
 }
@@ -60,12 +59,7 @@ Bound parse_bound(const std::string& text, const Tree& tree, const std::string& 
 constexpr double kRounding = 1e-9;
 
 /// Rounds to 15 digits, which removes rounding errors of steps: 3 * 0.1 is 0.30000000000000004 and becomes 0.3.
-double as_decimal(double value) {
-  const std::string text = fmt::format("{:.15g}", value);
-  double out = value;
-  if (std::abs(value) < 1e15) std::from_chars(text.data(), text.data() + text.size(), out);
-  return out;
-}
+double as_decimal(double value) { return std::abs(value) < 1e15 ? rounded(value, 15) : value; }
 
 std::vector<Tree> expand_range(const std::vector<Bound>& from, const Tree& tree, const std::string& key,
                                ValueCount& counted) {
@@ -76,9 +70,8 @@ std::vector<Tree> expand_range(const std::vector<Bound>& from, const Tree& tree,
   if (count > static_cast<double>(kMaxValues)) refuse(tree, key, "has more than a million values", "use a wider step");
   counted.add(static_cast<std::size_t>(count), tree.place, key);
   std::vector<Tree> out;
-  for (int i = 0; i < static_cast<int>(count); ++i) {
+  for (int i = 0; i < static_cast<int>(count); ++i)
     out.push_back(number(as_decimal(from[0].value + i * step), from[0].unit, tree));
-  }
   return out;
 }
 
@@ -87,9 +80,8 @@ std::vector<Tree> expand_logspace(const std::vector<Bound>& from, const Tree& tr
   const double first = from[0].value;
   const double last = from[1].value;
   const double count = from[2].value;
-  if (!(first > 0.0) || !(last > 0.0) || count < 2.0 || count != std::floor(count) || count > 10000.0) {
+  if (!(first > 0.0) || !(last > 0.0) || count < 2.0 || count != std::floor(count) || count > 10000.0)
     refuse(tree, key, "needs two positive ends and a count of 2 to 10000", kHowTo);
-  }
   counted.add(static_cast<std::size_t>(count), tree.place, key);
   std::vector<Tree> out;
   for (int i = 0; i < static_cast<int>(count); ++i) {
@@ -109,12 +101,10 @@ std::optional<RangeCall> parse_call(const Tree& value, const std::string& key, c
   if (!value.is_scalar() || open == std::string::npos) return std::nullopt;
   RangeCall call{value.text.substr(0, open), {}};
   if (std::find(names.begin(), names.end(), call.name) == names.end()) return std::nullopt;
-  if (value.text.back() != ')') {
+  if (value.text.back() != ')')
     refuse(value, key, "has no closing ')'", fmt::format("inside braces, put it into quotes: \"{}(...)\"", call.name));
-  }
-  for (const std::string& part : split_top(value.text.substr(open + 1, value.text.size() - open - 2))) {
+  for (const std::string& part : split_top(value.text.substr(open + 1, value.text.size() - open - 2)))
     call.bounds.push_back(parse_bound(boost::trim_copy(part), value, key, how_to));
-  }
   return call;
 }
 
@@ -140,6 +130,12 @@ std::optional<ContinuousRange> parse_continuous(const Tree& value, const std::st
   if (!(range.first < range.last) || !std::isfinite(range.last - range.first))
     refuse(value, key, "is not a range", "the first end must be below the last");
   return range;
+}
+
+double rounded(double value, int digits) {
+  const std::string text = fmt::format("{:.{}g}", value, digits);
+  std::from_chars(text.data(), text.data() + text.size(), value);
+  return value;
 }
 
 Tree number(double value, const std::string& unit, const Tree& like) {
@@ -200,9 +196,8 @@ std::string value_text(const Tree& value) {
   if (value.kind == Tree::Kind::null) return "~";
   std::string out;
   for (const Tree& item : value.items) out += (out.empty() ? "" : ", ") + value_text(item);
-  for (const Tree::Entry& entry : value.entries) {
+  for (const Tree::Entry& entry : value.entries)
     out += (out.empty() ? "" : ", ") + entry.key + ": " + value_text(entry.value);
-  }
   return value.is_map() ? "{" + out + "}" : "[" + out + "]";
 }
 

@@ -56,6 +56,9 @@ std::optional<ContinuousRange> parse_continuous(const Tree& value, const std::st
 inline constexpr const char* kContinuousHint =
     "write uniform(0.1 mm, 1 mm) or log_uniform(1 cm, 10 cm), with a unit at both ends";
 
+/// Rounds to this many significant digits, independent of the locale.
+double rounded(double value, int digits);
+
 /// Returns a scalar with the text of a number and its unit, and with the source location of `like`.
 Tree number(double value, const std::string& unit, const Tree& like);
 

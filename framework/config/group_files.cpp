@@ -27,9 +27,8 @@ fs::path find_in(const std::vector<fs::path>& roots, const std::string& group, c
       std::error_code trouble;
       fs::path file = root / folder / (name + ".yaml");
       if (fs::exists(file, trouble)) return file;
-      if (trouble == std::errc::permission_denied) {
+      if (trouble == std::errc::permission_denied)
         throw Error(file.string(), "cannot be accessed", "check the permissions of its folder");
-      }
     }
   }
   return {};
@@ -85,10 +84,9 @@ fs::path GroupFiles::find(const std::string& group, const std::string& name, con
   const Roots places = roots(beside);
   fs::path file = find_in(places.safe, group, name);
   if (file.empty()) {
-    if (const fs::path doubtful = find_in(places.open, group, name); !doubtful.empty()) {
+    if (const fs::path doubtful = find_in(places.open, group, name); !doubtful.empty())
       throw Error(place.text(), fmt::format("{} is in a folder where other users can write", doubtful.string()),
                   "move the config and its groups to a folder of your own");
-    }
   } else {
     file = shown(file);
   }

@@ -59,9 +59,8 @@ class ConfigKeys::Reader final : public Fields {
   }
   void note_owner(const Field& field) {
     const std::string name = field.name;
-    if (field.owner == Owner::unsaid) {
+    if (field.owner == Owner::unsaid)
       throw std::logic_error("the key '" + name + "' does not say whether it is of a strategy or of the run");
-    }
     if (field.owner == Owner::run) keys_.of_run_.insert(name);
     if (*field.beside == '\0') return;
     keys_.groups_.emplace_back(field.beside);

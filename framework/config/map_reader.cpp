@@ -10,8 +10,6 @@
 
 #include <algorithm>
 #include <array>
-#include <string_view>
-#include <utility>
 
 namespace palpate {
 namespace {
@@ -47,10 +45,9 @@ MapReader::MapReader(const Tree& input, std::string path, ResolveNotes& notes, P
       enters_id_(around.enters_id),
       complete_(input.kind == Tree::Kind::null ? around.complete : input.complete) {
   output_.place = input.place.file ? input.place : around.place;
-  if (!input.is_map() && input.kind != Tree::Kind::null) {
+  if (!input.is_map() && input.kind != Tree::Kind::null)
     throw Error(input.place.text(), fmt::format("{} is not a group of options", owner()),
                 fmt::format("write {{key: value, ...}}{}", path_.empty() ? "" : " or " + path_ + "KEY=VALUE"));
-  }
 }
 
 Tree MapReader::finish(const std::vector<std::string>& elsewhere) {
@@ -122,11 +119,10 @@ const Tree* MapReader::find(const Field& field) {
 }
 
 const Tree* MapReader::claim(const Field& field, MissingFieldMeaning missing) {
-  if (!adopted_.empty() && is_known(field.name)) {
+  if (!adopted_.empty() && is_known(field.name))
     throw Error(where(),
                 fmt::format("{} has an option '{}', and {} has one of the same name", adopted_, field.name, owner()),
                 "rename the plugin's option");
-  }
   known_.emplace_back(field.name);
   claimed_ = find(field);
   if (claimed_ == nullptr && field.required) {

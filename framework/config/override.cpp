@@ -43,15 +43,13 @@ void check_path(const std::string& path, const std::string& place) {
 
 Override parse_override(const std::string& text) {
   const auto equals = text.find('=');
-  if (equals == std::string::npos || equals == 0) {
+  if (equals == std::string::npos || equals == 0)
     throw Error(kCommandLine, fmt::format("'{}' is not KEY=VALUE", text), "for example kernel.length_scale=2cm");
-  }
   Override out{text.substr(0, equals), parse_value(text.substr(equals + 1), kCommandLine)};
   check_path(out.path, kCommandLine);
-  if (const auto comment = comment_in(text.substr(equals + 1), out.value); comment != std::string::npos) {
+  if (const auto comment = comment_in(text.substr(equals + 1), out.value); comment != std::string::npos)
     throw Error(kCommandLine, fmt::format("{}: '{}' is a comment", out.path, text.substr(equals + 1 + comment)),
                 "put the value in its own quotes: KEY='\"a #b\"'");
-  }
   out.value.set_layer(kCommandLineLayer);
   return out;
 }

@@ -11,7 +11,6 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <string_view>
 
 namespace palpate {
 namespace {
@@ -101,18 +100,16 @@ std::pair<std::string_view, std::string_view> split(const Tree& tree, const std:
   if (!tree.is_scalar()) refuse(tree, name, "is a list or a map, not a number", unit);
   const std::string_view text = tree.text;
   const std::size_t length = decimal_length(text);
-  if (length == 0 && is_continuous_range(text)) {
+  if (length == 0 && is_continuous_range(text))
     refuse(tree, name, fmt::format("'{}' is not a number", text),
            "use ranges only in scene.objects.draw.of and in the keys of sweep.sobol");
-  }
   if (length == 0) refuse(tree, name, fmt::format("'{}' is not a number", text), unit);
   std::string_view rest = text.substr(length);
   rest.remove_prefix(std::min(rest.find_first_not_of(" \t"), rest.size()));
   const std::string_view number = text.substr(0, length);
-  if (looks_octal(number)) {
+  if (looks_octal(number))
     refuse(tree, name, fmt::format("'{}' has a leading zero", text),
            "octal numbers are not supported: write it without the zero");
-  }
   return {number, rest};
 }
 
@@ -125,18 +122,16 @@ double to_double(std::string_view number, int power, const Tree& tree, const std
     int exponent = 0;
     if (e != std::string::npos) {
       const char* first = text.data() + e + 1 + (text[e + 1] == '+' ? 1 : 0);
-      if (std::from_chars(first, text.data() + text.size(), exponent).ec != std::errc() || std::abs(exponent) > 9999) {
+      if (std::from_chars(first, text.data() + text.size(), exponent).ec != std::errc() || std::abs(exponent) > 9999)
         refuse(tree, name, fmt::format("'{}' is out of range", tree.text), unit);
-      }
       text.erase(e);
     }
     text += fmt::format("e{}", exponent + power);
   }
   double value = 0.0;
   const auto result = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (result.ec != std::errc() || !std::isfinite(value)) {
+  if (result.ec != std::errc() || !std::isfinite(value))
     refuse(tree, name, fmt::format("'{}' is out of range", tree.text), unit);
-  }
   return value;
 }
 
@@ -170,9 +165,8 @@ std::vector<std::string> unit_names(Unit unit) {
 
 double read_quantity(const Tree& tree, const std::string& name, Unit unit) {
   const auto [number, symbol] = split(tree, name, unit);
-  if (!symbol.empty() && symbol[0] == ',') {
+  if (!symbol.empty() && symbol[0] == ',')
     refuse(tree, name, fmt::format("'{}' has a decimal comma", tree.text), "write a point");
-  }
   if (unit == Unit::none) {
     if (!symbol.empty())
       refuse(tree, name, fmt::format("'{}' is not a plain number", tree.text), "write it without a unit");
@@ -181,10 +175,9 @@ double read_quantity(const Tree& tree, const std::string& name, Unit unit) {
   if (symbol.empty()) refuse(tree, name, fmt::format("'{}' has no unit", tree.text), unit);
   for (const UnitName& known : kUnits) {
     if (known.name != symbol) continue;
-    if (known.unit != unit) {
+    if (known.unit != unit)
       refuse(tree, name,
              fmt::format("'{}' is a {}, not a {}", tree.text, dimension_name(known.unit), dimension_name(unit)), unit);
-    }
     return to_double(number, known.power, tree, name, unit) * known.factor;
   }
   refuse(tree, name, fmt::format("unknown unit '{}'", symbol), suggestion(symbol, unit_names(unit)));
@@ -214,12 +207,10 @@ std::int64_t read_integer(const Tree& tree, const std::string& name) {
   const char* first = number.data() + (number[0] == '+' ? 1 : 0);
   const char* last = number.data() + number.size();
   const auto result = std::from_chars(first, last, value);
-  if (result.ec == std::errc::result_out_of_range) {
+  if (result.ec == std::errc::result_out_of_range)
     refuse(tree, name, fmt::format("'{}' is out of range", tree.text), "at most 9223372036854775807");
-  }
-  if (result.ec != std::errc() || result.ptr != last || !rest.empty()) {
+  if (result.ec != std::errc() || result.ptr != last || !rest.empty())
     refuse(tree, name, fmt::format("'{}' is not a whole number", tree.text), "write digits only");
-  }
   return value;
 }
 

@@ -4,8 +4,6 @@
 #include "config/map_reader.hpp"
 #include "config/quantity.hpp"
 
-#include <palpate/error.hpp>
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -58,10 +56,9 @@ class Resolver final : public MapReader {
 
   void reals(double* values, std::size_t count, const Field& field) override {
     if (const Tree* tree = claim(field)) {
-      if (!is_row(*tree, count)) {
+      if (!is_row(*tree, count))
         refuse(*tree, field, fmt::format("expects a list of {} values", count),
                "write them in brackets, with commas between them");
-      }
       for (std::size_t i = 0; i < count; ++i) values[i] = quantity(tree->items[i], field);
     }
     write(field, write_quantities(values, count, field.unit), id_text(values, count, field.unit));
@@ -83,9 +80,8 @@ class Resolver final : public MapReader {
     }
     write(field, write_table(values, columns, field.unit), "");
     if (!note_count(field, values.size() / columns)) return;
-    for (std::size_t row = 0; row * columns < values.size(); ++row) {
+    for (std::size_t row = 0; row * columns < values.size(); ++row)
       identify(fmt::format("{}.{}", id_name(field), row), id_text(&values[row * columns], columns, field.unit));
-    }
   }
 
   void integer(std::int64_t& value, const Field& field) override {
@@ -140,10 +136,9 @@ class Resolver final : public MapReader {
 
   void section(bool& present, Options& options, const Field& field) override {
     const Tree* tree = claim(field, MissingFieldMeaning::absent);
-    if (tree != nullptr && tree->kind == Tree::Kind::null) {
+    if (tree != nullptr && tree->kind == Tree::Kind::null)
       throw Error(tree->place.text(), fmt::format("{} has no value", name(field)),
                   "write {} for its defaults, or none");
-    }
     if (tree != nullptr) present = !is_none(*tree);
     if (!present) return note_absent(field);
     if (enters(field)) identify(id_name(field), "{}");
@@ -166,11 +161,10 @@ class Resolver final : public MapReader {
   void plugin(PluginChoice& choice, const Field& field) override {
     const Tree* tree = claim(field);
     if (*field.beside != '\0') known_.emplace_back(field.beside);
-    if (tree != nullptr ? tree->kind == Tree::Kind::null : choice.type.empty()) {
+    if (tree != nullptr ? tree->kind == Tree::Kind::null : choice.type.empty())
       return miss(field.name,
                   {tree != nullptr ? tree->place.text() : where(), fmt::format("no {} is chosen", choice.kind),
                    fmt::format("write {}: {{type: ...}} or name a group under 'defaults'", field.name)});
-    }
     if (*field.beside == '\0') {
       output_.at(field.name) = read_plugin(choice, tree, field, field.name);
       return;

@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <cctype>
 #include <charconv>
-#include <utility>
 
 namespace palpate {
 
@@ -103,9 +102,8 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
     for (std::size_t j = 1; j <= b.size(); ++j) {
       const std::size_t change = a[i - 1] == b[j - 1] ? 0 : 1;
       d[i][j] = std::min({d[i - 1][j] + 1, d[i][j - 1] + 1, d[i - 1][j - 1] + change});
-      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1]) {
+      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
         d[i][j] = std::min(d[i][j], d[i - 2][j - 2] + 1);
-      }
     }
   }
   return d[a.size()][b.size()];
@@ -138,14 +136,12 @@ Tree::Slot Tree::slot(std::string_view path, const SourceLocation& asker) {
   for (std::string_view rest = path; !rest.empty();) {
     if (Tree* whole = tree->find(rest)) return {tree, *whole};
     const auto [head, tail] = split_path(rest);
-    if (tree->kind == Kind::list && find_item(*tree, head) == nullptr) {
+    if (tree->kind == Kind::list && find_item(*tree, head) == nullptr)
       throw Error(asker.text(), fmt::format("'{}': the list has no item '{}'", path, head),
                   tree->items.empty() ? "it is empty" : fmt::format("its items are 0 to {}", tree->items.size() - 1));
-    }
-    if (tree->kind == Kind::scalar) {
+    if (tree->kind == Kind::scalar)
       throw Error(asker.text(), fmt::format("'{}': there is no '{}' below a value", path, head),
                   fmt::format("the path ends at '{}'", path.substr(0, path.size() - rest.size() - 1)));
-    }
     Tree* child = const_cast<Tree*>(find_child(*tree, head));
     if (child == nullptr) {
       child = &tree->at(head);

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "config/yaml.hpp"
 
-#include "reading/read_file.hpp"
-
 #include <palpate/error.hpp>
 
 #include <fmt/format.h>
@@ -16,7 +14,6 @@
 #include <optional>
 #include <sstream>
 #include <utility>
-#include <vector>
 
 namespace palpate {
 namespace {
@@ -133,9 +130,8 @@ class YamlReader final : public YAML::EventHandler {
     }
     // yaml-cpp sets the tag "?" for plain scalars, and "!" for quoted scalars and block scalars. All other tags are
     // from the text.
-    if (!tag.empty() && tag != "?" && tag != "!") {
+    if (!tag.empty() && tag != "?" && tag != "!")
       refuse(value.place, fmt::format("tags ('{}') are not supported", tag), "remove it");
-    }
     count(value, open_.size());
     *slot = std::move(value);
     return slot;
@@ -144,10 +140,9 @@ class YamlReader final : public YAML::EventHandler {
   Tree* add_key(Tree& map, const Tree& key) {
     if (!key.is_scalar()) refuse(key.place, "a key must be plain text");
     if (map.entries.size() == kMaxKeys) refuse(key.place, "too many keys", "a map has at most 1000");
-    if (key.text == "<<") {
+    if (key.text == "<<")
       refuse(key.place, "merge keys ('<<') are not supported",
              "repeat the options, or put them into a group file and name it under 'defaults'");
-    }
     for (const Tree::Entry& twin : map.entries) {
       if (twin.key != key.text) continue;
       refuse(key.place, fmt::format("duplicate key '{}'", key.text),
@@ -226,9 +221,8 @@ std::size_t utf8_prefix(std::string_view text) {
 }  // namespace
 
 Tree parse_yaml(const std::string& text, const std::string& file) {
-  if (const std::size_t valid = utf8_prefix(text); valid < text.size()) {
+  if (const std::size_t valid = utf8_prefix(text); valid < text.size())
     throw Error(place_in(file, text, valid), "not UTF-8", "save the file as UTF-8");
-  }
   try {
     Tree tree = YamlReader(file, true).read(text);
     if (tree.kind == Tree::Kind::null) tree.kind = Tree::Kind::map;

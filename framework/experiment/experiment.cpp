@@ -241,9 +241,8 @@ void Experiment::check_backend(const TapRecord& tap) {
   // One impossible result may be a glitch. This many impossible results in a row mean that the backend is faulty.
   constexpr int kMostRefused = 10;
   refused_in_a_row_ = is_refused(last) ? refused_in_a_row_ + 1 : 0;
-  if (refused_in_a_row_ == kMostRefused) {
+  if (refused_in_a_row_ == kMostRefused)
     fail(fmt::format("{} taps in a row failed, the last with: {}", kMostRefused, last.reason), "correct the backend");
-  }
   const bool is_well = tap.is_contact() || tap.is_free_line();
   if (is_well) failed_in_a_row_ = 0;
   if (is_well || last.outcome == Outcome::unreachable || is_stop_wished()) return;
@@ -259,17 +258,15 @@ void Experiment::check_backend(const TapRecord& tap) {
 std::shared_ptr<Backend> Experiment::make_backend(const ExperimentSetup& setup) {
   context_.from_above = belief_->candidates().from_above;
   std::shared_ptr<Backend> backend = setup.backend ? setup.backend : context_.create<Backend>(options_.backend);
-  if (!context_.from_above && !backend->taps_any_line()) {
+  if (!context_.from_above && !backend->taps_any_line())
     throw Error("backend",
                 fmt::format("{} only taps from above, which the belief {} does not", options_.backend.type,
                             options_.belief.type),
                 "choose another backend, with backend process protocol: 2, or belief=height_map");
-  }
-  if (belief_->reads_scene() && !backend->scene_is_truth()) {
+  if (belief_->reads_scene() && !backend->scene_is_truth())
     throw Error("belief.view",
                 fmt::format("uses the scene of the config, but backend {} taps another scene", options_.backend.type),
                 "remove it, or choose backend=simulator");
-  }
   return backend;
 }
 

@@ -34,8 +34,7 @@ void CandidateOptions::list(Fields& fields) {
   fields.integer(count, Field("count",
                               "number of candidates; of a grid, number of cells per side. Not given: the belief's own, "
                               "47 cells per side for height_map and 2000 lines for solids")
-                            .at_least(1)
-                            .at_most(100000));
+                            .within(1, 100000));
   fields.require(!(count && spacing), "spacing", "is given together with count, set one of them to none");
 }
 
@@ -58,8 +57,7 @@ void StopOptions::list(Fields& fields) {
                                         "number of consecutive failed taps at which the run fails; not given: 3 if the "
                                         "backend cannot repeat a tap, else no limit. A tap that is `unreachable` does "
                                         "not count, nor does a tap from any side that meets nothing")
-                                      .at_least(1)
-                                      .at_most(100000)
+                                      .within(1, 100000)
                                       .from("an estimate: a healthy robot may fail one tap, but not three in a row"));
 }
 
@@ -89,8 +87,7 @@ void ChoiceOptions::list(Fields& fields) {
       Field("tie_tolerance",
             "relative tolerance of ties. A score is tied with the best score if the difference is at most tolerance "
             "times (|best score| + prior scale of the scores)")
-          .at_least(0)
-          .at_most(1)
+          .within(0, 1)
           .from(
               "rounding errors reach 1e-12; with tolerances below 1e-9 they decide taps at a length scale of 1.7 cm"));
 }
@@ -100,16 +97,14 @@ void ExperimentOptions::list(Fields& fields) {
                                  "record version that palpate writes into config.yaml. With this key, an option "
                                  "missing in the file means the behaviour before the option existed")
                                .of_run()
-                               .at_least(1)
-                               .at_most(kRecordVersion)
+                               .within(1, kRecordVersion)
                                .not_identifying());
   fields.text(name,
               Field("name", "name of the experiment. The name, as a slug, is also the name of the folder for the runs")
                   .of_run()
                   .not_identifying());
   fields.integer(seed, Field("seed", "seed of all random draws").at_least(0).of_run());
-  fields.integer(
-      taps, Field("taps", "maximum number of taps, the initial taps included").of_run().at_least(1).at_most(100000));
+  fields.integer(taps, Field("taps", "maximum number of taps, the initial taps included").of_run().within(1, 100000));
   fields.section(initial,
                  Field("initial", "initial taps, drawn from the candidates without replacement").of_strategy());
   fields.section(candidates, Field("candidates",

@@ -71,12 +71,11 @@ void MotionSelector::choose(const Belief& belief, TapRecord& tap) const {
 
 void MotionSelector::take_in(const TapRecord& tap, const Belief& belief) {
   const int motion = tap.request.motion;
-  if (motion < 0 || motion >= motions_->count()) {
+  if (motion < 0 || motion >= motions_->count())
     throw Error(
         "",
         fmt::format("a recorded tap was made by motion {}, but the config has {} motions", motion, motions_->count()),
         "the record is damaged", Error::Kind::run);
-  }
   motion_of_tap_.push_back(motion);
   MotionStatistics& shown = shown_[static_cast<std::size_t>(motion)];
   ++shown.taps;

@@ -19,7 +19,6 @@
 #include <palpate/motions.hpp>
 
 #include <memory>
-#include <optional>
 #include <vector>
 
 namespace palpate {

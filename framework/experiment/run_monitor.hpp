@@ -7,7 +7,6 @@
 #include <palpate/plugin.hpp>
 
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 

@@ -11,7 +11,6 @@
 #include <palpate/tap.hpp>
 
 #include <array>
-#include <map>
 #include <optional>
 #include <string>
 #include <vector>

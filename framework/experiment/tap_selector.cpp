@@ -17,11 +17,10 @@ TapSelector::TapSelector(const ExperimentOptions& options, const Belief& belief,
     : options_(options), area_(context.scene.area()), acquisition_(context.create<Acquisition>(options.acquisition)) {
   if (!belief.candidates().fixed) return;
   grid_ = grid_of(belief.candidates());
-  if (!options.initial.searches() && options.initial.count > grid_.size()) {
+  if (!options.initial.searches() && options.initial.count > grid_.size())
     throw Error("initial.count",
                 fmt::format("{} taps, but there are only {} candidates", options.initial.count, grid_.size()),
                 "use fewer initial taps or more candidates");
-  }
   initial_ = initial_design(options.initial, grid_, area_, context.seed);
   if (options.initial.searches())
     search_.emplace(options.initial.smallest, grid_, area_, Random(context.seed, "initial"));

@@ -3,7 +3,6 @@
 // choose, with a rule for ties. If the scores do not distinguish candidates, a fallback chooses.
 #pragma once
 
-#include "experiment/check_quantities.hpp"
 #include "experiment/experiment_options.hpp"
 #include "experiment/pick_best.hpp"
 #include "experiment/search_design.hpp"
@@ -14,7 +13,6 @@
 
 #include <memory>
 #include <optional>
-#include <string>
 #include <vector>
 
 namespace palpate {

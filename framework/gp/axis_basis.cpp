@@ -66,9 +66,8 @@ struct SymmetryPart {
   /// most `enough`, or until there are `most` columns.
   Eigen::MatrixXd pivoted(double enough, Eigen::Index most) const {
     Eigen::VectorXd residual(count);
-    for (Eigen::Index i = 0; i < count; ++i) {
+    for (Eigen::Index i = 0; i < count; ++i)
       residual(i) = covariances.at(i, i) + (sign == 0.0 ? 0.0 : sign * covariances.at(i, covariances.mirror_image(i)));
-    }
     most = std::min(most, count);
     Eigen::MatrixXd columns(count, std::min<Eigen::Index>(most, 32));
     Eigen::Index rank = 0;

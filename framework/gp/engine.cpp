@@ -23,10 +23,9 @@ KindChoice choose_kind(const EngineSettings& settings, const Kernel& kernel, con
   if (!kernel.separable()) return {Kind::dense, "the kernel is not separable"};
   if (!candidates.is_grid()) return {Kind::dense, "the candidates are not a product grid"};
   if (!(settings.accuracy > 0.0)) return {Kind::dense, "no error is allowed"};
-  if (error > settings.accuracy) {
+  if (error > settings.accuracy)
     return {Kind::grid,
             fmt::format("the error bound of lowrank {:.1e} is above the accuracy {:.1e}", error, settings.accuracy)};
-  }
   // Average numbers of multiplications per candidate and tap. `grid` needs one multiplication per earlier tap.
   // `lowrank` needs half of the rank, because the grid is symmetric. In addition, each tap needs matrix products in the
   // coordinates of the basis. In a short run, the computation of the basis costs more than it saves.

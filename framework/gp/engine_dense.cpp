@@ -37,10 +37,9 @@ class DenseEngine final : public Engine {
                          Eigen::Map<Eigen::VectorXd>(covariance, count));
       const Eigen::Index padded = (count + loops::kBlock - 1) / loops::kBlock * loops::kBlock;
       std::fill(covariance + count, covariance + padded, 0.0);
-      for (int i = 0; i < padded / loops::kBlock; ++i, covariance += loops::kBlock) {
+      for (int i = 0; i < padded / loops::kBlock; ++i, covariance += loops::kBlock)
         loops::absorb_dense({rows_.panel(block + i), covariance, row.factor.data(), depth, row.pivot},
                             maps_.update(block + i, row.coefficients));
-      }
     });
   }
 

@@ -39,9 +39,8 @@ class GridEngine final : public Engine {
       const int count = std::min(kGroup, strips - first);
       double* const a = scaled_[static_cast<std::size_t>(worker)].data();
       const std::size_t a_stride = static_cast<std::size_t>(depth) * loops::kStripRows;
-      for (int i = 0; i < count; ++i) {
+      for (int i = 0; i < count; ++i)
         scale(along_y_.panel(first + i), row.inverse, a + static_cast<std::size_t>(i) * a_stride);
-      }
       loops::absorb_product(
           {a, a_stride, count, along_x_.panel(0), along_x_.stride(), depth, along_x_.padded() / kLine},
           maps_.update(first, row.coefficients));

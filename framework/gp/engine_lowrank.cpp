@@ -59,9 +59,7 @@ class LowrankEngine final : public Engine {
     basis_y_.reserve(y_.basis.rank());
     for (int i = 0; i < x_.basis.rank(); ++i) basis_x_.append(x_.basis.directions.col(i).data());
     for (int i = 0; i < y_.basis.rank(); ++i) basis_y_.append(y_.basis.directions.col(i).data());
-    for (int i = 0; i < workers->threads(); ++i) {
-      a_.emplace_back(static_cast<std::size_t>(x_.basis.rank()) * kRows);
-    }
+    for (int i = 0; i < workers->threads(); ++i) a_.emplace_back(static_cast<std::size_t>(x_.basis.rank()) * kRows);
   }
 
   void reserve(int rows) override {

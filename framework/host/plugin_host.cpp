@@ -23,8 +23,6 @@
 #include <cstring>
 #include <set>
 #include <sstream>
-#include <utility>
-#include <vector>
 
 #include <boost/algorithm/string/split.hpp>
 #include <boost/dll/shared_library.hpp>
@@ -90,9 +88,8 @@ void check_complete(const fs::path& file, const std::string& bytes) {
   ElfW(Ehdr) header{};
   const auto known = std::min<std::uint64_t>(size, sizeof header);
   std::memcpy(&header, bytes.data(), known);
-  if (std::memcmp(header.e_ident, ELFMAG, std::min<std::uint64_t>(known, SELFMAG)) != 0) {
+  if (std::memcmp(header.e_ident, ELFMAG, std::min<std::uint64_t>(known, SELFMAG)) != 0)
     refuse(file, "reading the header", "not a shared library", "build it with palpate_add_plugin()");
-  }
   if (known < EI_NIDENT) incomplete();
   constexpr char kNativeClass = sizeof(void*) == 8 ? ELFCLASS64 : ELFCLASS32;
   if (header.e_ident[EI_CLASS] != kNativeClass) return;
@@ -109,26 +106,21 @@ void check_complete(const fs::path& file, const std::string& bytes) {
 
 const PluginManifest& check_manifest(const boost::dll::shared_library& library, const fs::path& file,
                                      const std::string& kind, const std::string& name) {
-  if (!library.has("palpate_plugin")) {
+  if (!library.has("palpate_plugin"))
     refuse(file, "finding the symbol", "no symbol 'palpate_plugin'", "end the source with PALPATE_PLUGIN(...)");
-  }
   const auto& manifest = library.get<const PluginManifest>("palpate_plugin");
-  if (std::memcmp(manifest.magic, "palpate", sizeof manifest.magic) != 0) {
+  if (std::memcmp(manifest.magic, "palpate", sizeof manifest.magic) != 0)
     refuse(file, "reading the manifest", "the symbol 'palpate_plugin' is not a plugin manifest");
-  }
-  if (manifest.abi != kPluginAbi || manifest.size != sizeof(PluginManifest)) {
+  if (manifest.abi != kPluginAbi || manifest.size != sizeof(PluginManifest))
     refuse(file, "comparing the ABI", fmt::format("built for ABI {}, the program has {}", manifest.abi, kPluginAbi),
            "build it again with the headers of this program");
-  }
-  if (std::string_view(manifest.stamp) != PALPATE_BUILD_STAMP) {
+  if (std::string_view(manifest.stamp) != PALPATE_BUILD_STAMP)
     refuse(file, "comparing the build", stamp_difference(manifest.stamp, PALPATE_BUILD_STAMP),
            "build it with the same compiler flags (-march, -mavx and their like) as the program");
-  }
-  if (kind != manifest.kind || name != manifest.name) {
+  if (kind != manifest.kind || name != manifest.name)
     refuse(file, "comparing the name",
            fmt::format("the library contains the plugin {}/{}", manifest.kind, manifest.name),
            "name folder and file like the plugin");
-  }
   return manifest;
 }
 
@@ -142,10 +134,9 @@ void guarded(const Tree* options, const std::string& plugin, const char* failure
     call();
   } catch (const Error& refusal) {
     const bool names_option = options != nullptr && !refusal.where().empty();
-    if (const Tree* option = names_option ? options->find_path(refusal.where()) : nullptr) {
+    if (const Tree* option = names_option ? options->find_path(refusal.where()) : nullptr)
       throw Error(option->place.file ? option->place.text() : place,
                   fmt::format("{}: {}: {}", plugin, refusal.where(), refusal.reason()), refusal.hint(), refusal.kind());
-    }
     // If the plugin gives a place, such as a file that it reads, this place is nearer to the cause than the config.
     if (!refusal.where().empty()) throw Error(refusal.where(), refusal.reason(), refusal.hint(), refusal.kind());
     throw Error(place, fmt::format("{}: {}", plugin, refusal.reason()), refusal.hint(), refusal.kind());
@@ -295,16 +286,14 @@ std::shared_ptr<const PluginHost::Library> PluginHost::library(const std::string
   }
   if (found.empty()) {
     for (const fs::path& folder : folders_) {
-      if (plugins_of_build(folder).count({kind, name}) != 0) {
+      if (plugins_of_build(folder).count({kind, name}) != 0)
         throw Error("", fmt::format("plugin {}/{} is not built", kind, name),
                     fmt::format("build it with ./palpate, or with 'cmake --build {} --target palpate_{}_{}'",
                                 (folder / ".." / "..").lexically_normal().string(), kind, name));
-      }
       const std::string trouble = trouble_of_folder(folder);
-      if (!trouble.empty()) {
+      if (!trouble.empty())
         throw Error("", fmt::format("no plugin {}/{}", kind, name),
                     fmt::format("the folder {} {}, see PALPATE_PLUGIN_PATH", folder.string(), trouble));
-      }
     }
     std::vector<std::string> known = group_names_ ? group_names_(kind) : std::vector<std::string>();
     for (const std::string& one : names(kind)) {
@@ -313,11 +302,10 @@ std::shared_ptr<const PluginHost::Library> PluginHost::library(const std::string
     std::sort(known.begin(), known.end());
     throw Error("", fmt::format("no plugin {}/{}", kind, name), suggestion(name, known));
   }
-  if (found.size() > 1) {
+  if (found.size() > 1)
     throw Error("",
                 fmt::format("plugin {}/{} exists twice: {} and {}", kind, name, found[0].string(), found[1].string()),
                 "remove one, or build it under another name");
-  }
   slot = std::make_shared<const Library>(found.front(), kind, name);
   return slot;
 }

@@ -60,10 +60,9 @@ JobEnd run_job(const RunEnvironment& environment, const fs::path& directory, con
   refuse_link(directory.parent_path());
   refuse_link(directory);
   std::error_code none;
-  if (!fs::is_directory(directory, none)) {
-    throw Error(directory.string(), "is missing", "it has no config.yaml: run 'palpate sweep' to restore it",
-                Error::Kind::run);
-  }
+  if (!fs::is_directory(directory, none))
+    throw Error(directory.string(), "is missing",
+                "it has no config.yaml: repeat 'palpate sweep', or resume the race, to restore it", Error::Kind::run);
   const std::shared_ptr<RunDirectory> held = hold(directory);
   if (!held) return JobEnd::busy;
   const RunStatus now = read_ending(directory);
@@ -73,13 +72,12 @@ JobEnd run_job(const RunEnvironment& environment, const fs::path& directory, con
     const auto trouble = lacks_files(directory, *now.end)
                              ? catch_error([&] { restored = restore_files(environment, *held); })
                              : std::nullopt;
-    for (const std::string& name : restored.lost) {
+    for (const std::string& name : restored.lost)
       std::fputs(
           fmt::format("{}: {} is missing or damaged, and this build computes a different one from the same taps\n",
                       directory.string(), name)
               .c_str(),
           stderr);
-    }
     // A failed job stays failed, even if its record is damaged.
     if (trouble && !failed) throw *trouble;
     return failed ? JobEnd::failed : JobEnd::done;

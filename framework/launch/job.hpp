@@ -32,7 +32,7 @@ inline constexpr const char* kBlocked = "blocked";
 
 /// Runs the job in `directory`, whose name is the job's id. Does nothing if the job is done, or has failed and
 /// options.retry_failed is false. An error is recorded as a failure of the job, unless the config was deleted: `palpate
-/// sweep` writes it again.
+/// sweep` writes it again, or `palpate resume` in a race.
 ///
 /// Throws Error if nothing can be recorded, or if a missing file of a done job cannot be restored. Throws Error of kind
 /// `busy` if another process uses the arm, or if the external program has changed.

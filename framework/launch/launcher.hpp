@@ -47,13 +47,16 @@ class Launcher {
   /// Stops running jobs after their current tap and drops waiting jobs. poll() still returns the running jobs.
   virtual void cancel() = 0;
 
-  /// On a cluster, lets the scheduler execute `palpate` with these words once all accepted jobs have ended. Throws
-  /// Error.
+  /// On a cluster, lets the scheduler execute `palpate` with these words once all accepted jobs have ended. The
+  /// environment variable kEndedJobs contains the number of jobs of the sweep that have ended now. Throws Error.
   virtual void continue_with(const std::vector<std::string>&) {}
 
   /// Returns the shell command with which a user can end the jobs that outlive this process; "" if no job outlives it.
   virtual std::string stop_command() const { return {}; }
 };
+
+/// See Launcher::continue_with().
+inline constexpr const char* kEndedJobs = "PALPATE_ENDED_JOBS";
 
 /// Options for the scheduler of a cluster.
 struct ClusterOptions {

@@ -2,7 +2,6 @@
 #include "launch/local_launcher.hpp"
 
 #include "reading/read_file.hpp"
-#include "record/files.hpp"
 
 #include <palpate/error.hpp>
 
@@ -64,9 +63,8 @@ JobEnd LocalLauncher::run(std::size_t job) const {
     if (error != nullptr && error->kind() == Error::Kind::busy) end = JobEnd::blocked;
     // execute_jobs() reports a missing folder once for all jobs. fmt::print would throw if the terminal is closed.
     std::error_code unknown;
-    if (std::filesystem::exists(order_.sweep.directory, unknown) || unknown) {
+    if (std::filesystem::exists(order_.sweep.directory, unknown) || unknown)
       std::fputs(fmt::format("job {}: {}\n", job, printable(trouble.what())).c_str(), stderr);
-    }
   }
   return end;
 }
@@ -76,9 +74,8 @@ Launcher::PollResult LocalLauncher::poll(double seconds) {
     waiting_.insert(waiting_.end(), later_.begin(), later_.end());
     later_.clear();
   }
-  while (!waiting_.empty() && static_cast<int>(running_.size()) < order_.options.workers && start(waiting_.front())) {
+  while (!waiting_.empty() && static_cast<int>(running_.size()) < order_.options.workers && start(waiting_.front()))
     waiting_.pop_front();
-  }
   std::vector<ChildProcess*> processes;
   for (const RunningJob& one : running_) processes.push_back(one.process.get());
   if (!later_.empty()) seconds = std::min(seconds, std::chrono::duration<double>(kBusyPause).count());
@@ -116,9 +113,8 @@ void LocalLauncher::conclude(std::size_t job, const ChildProcess& process, PollR
   const bool ended = end == JobEnd::done || end == JobEnd::failed;
   const bool known = ended || end == JobEnd::unrecorded || end == JobEnd::busy || end == JobEnd::interrupted;
   // A plugin that calls exit(0) or exit(1) leaves no result.
-  if (!cancelled_ && (!known || (ended && !has_ended(directory_of(job))))) {
+  if (!cancelled_ && (!known || (ended && !has_ended(directory_of(job)))))
     record_failure(directory_of(job), fmt::format("its process ended with status {}", WEXITSTATUS(wait_status)));
-  }
   state.returned.push_back(job);
 }
 

@@ -65,9 +65,9 @@ std::string script_head() {
 }
 
 /// Returns a script that executes `palpate` with these words.
-std::string command_script(const fs::path& program, const std::vector<std::string>& words) {
-  std::string out = "#!/bin/sh\n# Decides the next round of a race and submits its jobs.\n" + script_head() + "exec " +
-                    shell_word(program.string());
+std::string command_script(const fs::path& program, const std::vector<std::string>& words, std::size_t ended_jobs) {
+  std::string out = "#!/bin/sh\n# Decides the next round of a race and submits its jobs.\n" + script_head() +
+                    fmt::format("export {}={}\nexec {}", kEndedJobs, ended_jobs, shell_word(program.string()));
   for (const std::string& word : words) out += " " + shell_word(word);
   return out + "\n";
 }
@@ -131,14 +131,18 @@ class SlurmLauncher final : public Launcher {
 
   void continue_with(const std::vector<std::string>& words) override {
     if (arrays_.empty()) return;
-    write_file(folder_ / kNext, command_script(order_.environment.installation.program, words));
+    write_file(folder_ / kNext,
+               command_script(order_.environment.installation.program, words, order_.sweep.jobs.size() - open_.size()));
     std::vector<std::string> options =
         cluster_words(folder_, fmt::format("--dependency=afterany:{}", fmt::join(arrays_, ":")));
     options.push_back((folder_ / kNext).string());
     arrays_.push_back(slurm::submit(options).array);
   }
 
-  std::string stop_command() const override { return fmt::format("scancel {}", fmt::join(arrays_, " ")); }
+  std::string stop_command() const override {
+    return order_.sweep.rounds.empty() ? fmt::format("scancel {}", fmt::join(arrays_, " "))
+                                       : "scancel --name=" + shell_word(job_name());
+  }
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -172,6 +176,12 @@ class SlurmLauncher final : public Launcher {
     return words;
   }
 
+  /// Returns the name of the sweep. The jobs of a race, which submit further jobs, have a name of their own.
+  std::string job_name() const {
+    const std::string name = directory_.parent_path().filename().string();
+    return order_.sweep.rounds.empty() ? name : name + "_" + directory_.filename().string();
+  }
+
   /// Returns the arguments of sbatch that all submissions share, and `own` behind those of the user. If a user forgets
   /// the value of an option, it takes `own` as its value, and the submission or all of its tasks fail at once.
   std::vector<std::string> cluster_words(const fs::path& folder, const std::string& own) const {
@@ -182,7 +192,7 @@ class SlurmLauncher final : public Launcher {
     if (!cluster.account.empty()) words.push_back("--account=" + cluster.account);
     words.insert(words.end(), cluster.words.begin(), cluster.words.end());
     words.push_back(own);
-    words.push_back(fmt::format("--job-name={}", directory_.parent_path().filename().string()));
+    words.push_back("--job-name=" + job_name());
     // Slurm replaces %A and %a in a file name; %% is a percent sign.
     words.push_back(fmt::format("--output={}/%A_%a.log", boost::replace_all_copy(folder.string(), "%", "%%")));
     return words;
@@ -202,10 +212,9 @@ class SlurmLauncher final : public Launcher {
       }
     });
     silent_since_ = !trouble ? std::nullopt : silent_since_ ? silent_since_ : std::optional(begun);
-    if (trouble && Clock::now() - *silent_since_ > kMostSilence) {
+    if (trouble && Clock::now() - *silent_since_ > kMostSilence)
       throw Error("squeue", fmt::format("has not answered for ten minutes: {}", trouble->reason()),
                   "the jobs continue; follow them with 'palpate status'", Error::Kind::run);
-    }
     // With --retry-failed, a failed job keeps its old result until it starts, so only the queue shows whether it has
     // ended.
     const auto ended = std::stable_partition(open_.begin(), open_.end(), [&](std::size_t job) {
@@ -240,10 +249,9 @@ std::string shell_word(const std::string& text) {
 
 void check_sbatch_words(const std::vector<std::string>& words) {
   for (const std::string& word : words) {
-    if (word.size() < 2 || word.front() != '-' || word == "--") {
+    if (word.size() < 2 || word.front() != '-' || word == "--")
       throw Error("command line", fmt::format("--sbatch: '{}' is not an option of sbatch", word),
                   "write for example --sbatch=--mem=4G");
-    }
     const bool is_long = word.compare(0, 2, "--") == 0;
     const std::string name = is_long ? word.substr(0, word.find('=')) : word.substr(0, 2);
     for (const ReservedOption& own : kReservedOptions) {

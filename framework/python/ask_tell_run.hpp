@@ -6,7 +6,6 @@
 #include "answers/tap_result_checks.hpp"
 #include "experiment/experiment.hpp"
 #include "module_host.hpp"
-#include "record/fields.hpp"
 #include "record/json.hpp"
 #include "record/run.hpp"
 #include "threads.hpp"
@@ -128,10 +127,9 @@ class AskTellRun {
     return *run_;
   }
   static Eigen::VectorXd checked(const Array& scores, py::ssize_t wanted) {
-    if (scores.size() != wanted) {
+    if (scores.size() != wanted)
       throw Error("scores", "has " + std::to_string(scores.size()) + " values",
                   "give one per candidate, " + std::to_string(wanted));
-    }
     const py::array_t<double, py::array::c_style | py::array::forcecast> dense(scores);
     Eigen::VectorXd out = Eigen::Map<const Eigen::VectorXd>(dense.data(), wanted);
     if (!out.allFinite()) throw Error("scores", "has a value that is not a finite number", "use 0 for a worthless tap");
@@ -153,10 +151,9 @@ inline TapResult result_of(const std::string& outcome, std::optional<double> hei
                            const std::optional<std::array<double, 3>>& contact, double force, double seconds,
                            const std::string& reason, bool ends_run) {
   const std::optional<Outcome> known = answered_outcome(outcome);
-  if (!known) {
+  if (!known)
     throw Error("tell", "unknown outcome '" + plain_line(outcome) + "'",
                 "use contact, no_contact, unreachable, timeout or aborted");
-  }
   TapResult out = tap_without_contact(*known, seconds, reason, ends_run);
   // The height is only the z coordinate of the touched point. If the tap comes from above, x and y follow from the
   // tap's line.

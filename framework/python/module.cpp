@@ -6,7 +6,6 @@
 #include "module_host.hpp"
 #include "record/catalogue.hpp"
 #include "record/fields.hpp"
-#include "record/json.hpp"
 #include "records.hpp"
 #include "sweep/draft.hpp"
 #include "sweep/plan.hpp"

@@ -2,7 +2,6 @@
 // Records for Python: a run with its taps and models, and a sweep with its jobs.
 #pragma once
 
-#include "belief/metrics.hpp"
 #include "experiment/experiment.hpp"
 #include "module_host.hpp"
 #include "record/json.hpp"
@@ -106,10 +105,9 @@ class Record {
  private:
   std::unique_ptr<RunReplay> make_replay() const {
     using namespace quantity;
-    if (recording_.is_any_side()) {
+    if (recording_.is_any_side())
       throw Error(recording_.directory.string(), "is a run from any side, but this needs a run from above",
                   "read its surface from surface.ply");
-    }
     return std::make_unique<RunReplay>(
         environment_.run_environment, recording_,
         readers_from_first_tap("maps", {kUncertainty, kLabelMean, kObjectProbability, kHeightMean, kHeightStd}, true));

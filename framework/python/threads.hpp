@@ -9,7 +9,6 @@
 #include <atomic>
 #include <chrono>
 #include <cstdio>
-#include <cstdlib>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -156,10 +155,9 @@ class ObjectLock {
 class ObjectGuard {
  public:
   explicit ObjectGuard(ObjectLock& lock, const std::string& place = "experiment") {
-    if (!lock.is_here()) {
+    if (!lock.is_here())
       throw Error(place, "was opened by the parent of this forked process",
                   "open it in the child after the parent has closed it", Error::Kind::run);
-    }
     no_gil_.emplace();
     lock_ = std::unique_lock(lock.mutex_);
   }

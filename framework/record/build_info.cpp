@@ -42,13 +42,12 @@ Tree read_stamp(const Installation& installation) {
 
 Tree describe_plugins(const PluginHost& host, const PluginNames& plugins) {
   Tree out = Tree::list();
-  for (const LoadedPlugin& one : host.loaded(plugins)) {
+  for (const LoadedPlugin& one : host.loaded(plugins))
     out.items.push_back(Tree::map({{"kind", Tree::quote(one.kind)},
                                    {"name", Tree::quote(one.name)},
                                    {"file", Tree::quote(one.file.string())},
                                    {"hash", Tree::quote(one.hash)},
                                    {"abi", Tree::scalar(std::to_string(kPluginAbi))}}));
-  }
   return out;
 }
 

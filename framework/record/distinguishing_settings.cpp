@@ -13,8 +13,6 @@
 namespace palpate {
 namespace {
 
-namespace fs = std::filesystem;
-
 constexpr std::size_t kMostShown = 3;
 /// Largest number of settings that are compared. Each setting is compared over all pairs of runs, and configs may
 /// differ in 100,000 values.
@@ -133,7 +131,7 @@ std::map<std::string, std::set<std::string>> recorded_groups(const std::map<std:
   for (const auto& [path, origin] : origins) {
     const std::size_t end = origin.find(".yaml:");
     if (end == std::string::npos) continue;
-    const fs::path file = origin.substr(0, end);
+    const std::filesystem::path file = origin.substr(0, end);
     const std::string kind = file.parent_path().filename().string();
     if (kind == path.substr(0, path.find('.'))) out[kind].insert(file.filename().string());
   }

@@ -2,7 +2,6 @@
 #include "record/evaluation_point.hpp"
 
 #include "config/comparison.hpp"
-#include "config/compose.hpp"
 #include "config/quantity.hpp"
 #include "record/fields.hpp"
 

@@ -64,10 +64,9 @@ void collect(const Tree& map, const std::string& prefix, std::vector<Clause>& li
 
 std::vector<Clause> lines_of(const Tree& expect) {
   std::vector<Clause> lines;
-  if (!expect.is_map() && expect.kind != Tree::Kind::null) {
+  if (!expect.is_map() && expect.kind != Tree::Kind::null)
     throw Error(expect.place.text(), "expect: is not a map of expectations",
                 "write expect: {object_taps: \">= 9\", rmse_m: \"<= 2 cm\"}");
-  }
   collect(expect, "", lines);
   return lines;
 }
@@ -85,31 +84,27 @@ const RecordField& read_key(const Clause& line, Expectation& out) {
   out.key = out.field = line.key;
   const auto open = line.key.find('(');
   if (open != std::string::npos) {
-    if (line.key.back() != ')' || line.key.find('(', open + 1) != std::string::npos) {
+    if (line.key.back() != ')' || line.key.find('(', open + 1) != std::string::npos)
       throw Error(line.place.text(), fmt::format("expect: '{}' is not a field or STATISTIC(field)", line.key),
                   "write it like median(object_taps)");
-    }
     const std::string name = line.key.substr(0, open);
     out.field = line.key.substr(open + 1, line.key.size() - open - 2);
     const auto found = std::find_if(kStatistics.begin(), kStatistics.end(),
                                     [&](const StatisticName& one) { return one.name == name; });
-    if (found == kStatistics.end()) {
+    if (found == kStatistics.end())
       throw Error(line.place.text(), fmt::format("expect: unknown statistic '{}'", name),
                   suggestion(name, statistic_names()));
-    }
     out.statistic = found->statistic;
     out.share = found->share;
   }
   const bool counts = out.field == kFailedRuns;
   const RecordField* field = counts ? &failed_runs : find_summary_field(out.field);
-  if (field == nullptr) {
+  if (field == nullptr)
     throw Error(line.place.text(), fmt::format("expect: the summary has no field '{}'", out.field),
                 suggestion(out.field, field_names()));
-  }
-  if (out.statistic != Statistic::each && (counts || field->type == RecordField::Type::text)) {
+  if (out.statistic != Statistic::each && (counts || field->type == RecordField::Type::text))
     throw Error(line.place.text(), fmt::format("expect: '{}' has no statistics", out.field),
                 fmt::format("write {} alone", out.field));
-  }
   return *field;
 }
 
@@ -171,10 +166,9 @@ std::vector<Expectation> read_expectations(const Tree* expect) {
     const RecordField& field = read_key(line, one);
     one.place = line.place.text();
     const bool several = line.value->kind == Tree::Kind::list;
-    if (several && line.value->items.empty()) {
+    if (several && line.value->items.empty())
       throw Error(line.place.text(), fmt::format("expect.{}: the list is empty", one.key),
                   example(field, one.statistic));
-    }
     if (!several) out.push_back(read_comparison(field, one, *line.value));
     for (const Tree& item : line.value->items) out.push_back(read_comparison(field, one, item));
   }

@@ -8,7 +8,6 @@
 #include "config/resolve.hpp"
 #include "config/tree.hpp"
 
-#include <optional>
 #include <string>
 #include <vector>
 

@@ -2,16 +2,12 @@
 #include "record/fields.hpp"
 
 #include "experiment/unreached.hpp"
-#include "record/files.hpp"
-#include "record/json.hpp"
 #include "record/quantiles.hpp"
 
 #include <fmt/format.h>
 #include <boost/algorithm/string/predicate.hpp>
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <set>
 #include <sstream>
 
@@ -317,10 +313,9 @@ void list_choice(FieldList<TapRecord>& list) {
                  [](const Tap& t) { return t.request.predicted->height; })
       .in(Unit::metre);
   list.read_by([](Tap& t, const RowReader& in) {
-    if (const std::optional<double> height = in.row().number("predicted.height")) {
+    if (const std::optional<double> height = in.row().number("predicted.height"))
       t.request.predicted =
           Prediction{*height, in.number("predicted.standard_deviation", 0.0), in.row().number("predicted.probability")};
-    }
   });
   list.add_where(is_predicted, "predicted.standard_deviation", "standard deviation of the predicted height",
                  [](const Tap& t) { return t.request.predicted->standard_deviation; })

@@ -8,8 +8,6 @@
 #include "record/field.hpp"
 #include "record/resolved_config.hpp"
 
-#include <palpate/error.hpp>
-
 #include <array>
 #include <cstdint>
 #include <filesystem>

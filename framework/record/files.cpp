@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "record/files.hpp"
 
-#include <palpate/error.hpp>
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,7 +8,6 @@
 #include <cstring>
 #include <mutex>
 #include <set>
-#include <utility>
 
 #include <fcntl.h>
 #include <sys/random.h>
@@ -328,10 +325,9 @@ FileLock::~FileLock() {
 }
 
 void FileLock::check() const {
-  if (owner_ != ::getpid()) {
+  if (owner_ != ::getpid())
     throw Error(file_.parent_path().string(), "is held by the parent of this forked process",
                 "open it in the child after the parent has closed it", Error::Kind::run);
-  }
   struct stat held {
   }, named{};
   if (::fstat(descriptor_.number(), &held) != 0) fail(file_, "cannot be accessed");

@@ -166,11 +166,10 @@ std::string xml_text(const std::string& text) {
 std::vector<ExpectationResult> judge(const std::vector<Expectation>& expectations,
                                      const std::vector<RunOutcome>& runs) {
   std::vector<ExpectationResult> verdicts;
-  for (const Expectation& one : expectations) {
+  for (const Expectation& one : expectations)
     verdicts.push_back(one.field == kFailedRuns           ? judge_count(one, runs)
                        : one.statistic == Statistic::each ? judge_each(one, runs)
                                                           : judge_statistic(one, runs));
-  }
   return verdicts;
 }
 

@@ -217,10 +217,9 @@ void RecordReader::check_attempt(const Row& row) {
   const auto number = count_in(row, "attempt");
   if (number != attempts_ + 1)
     refuse(fmt::format("has attempt {} instead of attempt {}: a line is missing", row.cell("attempt"), attempts_ + 1));
-  if (count_in(row, "after_tap") != taps_) {
+  if (count_in(row, "after_tap") != taps_)
     refuse(fmt::format("starts after tap {}, but the taps before it are {}: a line is missing", row.cell("after_tap"),
                        taps_));
-  }
   ++attempts_;
   set_up_ = false;
 }
@@ -238,11 +237,10 @@ void RecordReader::check_tap(const Row& row, bool announces) {
   const auto tap = count_in(row, key);
   const std::int64_t next = taps_ + 1;
   if (!tap) refuse(fmt::format("has no number '{}'", key));
-  if (*tap != next) {
+  if (*tap != next)
     refuse(*tap > next ? fmt::format("has tap {} instead of tap {}: a line is missing", *tap, next)
            : announces ? fmt::format("announces tap {}, which is recorded already", *tap)
                        : fmt::format("has tap {} a second time instead of tap {}", *tap, next));
-  }
   if (!set_up_) refuse(fmt::format("has tap {} before its attempt was set up: a line is missing", *tap));
   if (announces && announced_) refuse(fmt::format("announces tap {} a second time", *tap));
   if (!announces && announces_ && !announced_)

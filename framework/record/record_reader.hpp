@@ -30,7 +30,6 @@
 // Lines of other kinds and unknown fields are ignored. The fields are listed in runs/README.md.
 #pragma once
 
-#include "config/compose.hpp"
 #include "config/tree.hpp"
 #include "record/fields.hpp"
 #include "record/json.hpp"

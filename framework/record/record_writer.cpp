@@ -3,8 +3,6 @@
 
 #include "record/json.hpp"
 
-#include <palpate/error.hpp>
-
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
@@ -14,11 +12,9 @@
 
 namespace palpate {
 
-namespace fs = std::filesystem;
-
 std::string now_text() { return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::chrono::system_clock::now())); }
 
-RecordWriter::RecordWriter(const fs::path& directory)
+RecordWriter::RecordWriter(const std::filesystem::path& directory)
     : directory_(directory), lock_(make_folder(directory) / kRecordFile) {}
 
 const RunRecord& RecordWriter::before() {
@@ -115,10 +111,9 @@ void RecordWriter::add_end(const Ending& ending, bool sync) {
   row.add("reason", ending.reason);
   for (const auto& [name, value] : ending.summary.fields) row.add("summary." + name, value);
   Tree files = Tree::map();
-  for (const Ending::ListedFile& one : ending.files) {
+  for (const Ending::ListedFile& one : ending.files)
     files.at(one.name) =
         Tree::map({{"bytes", Tree::scalar(std::to_string(one.bytes))}, {"hash", Tree::quote(one.hash)}});
-  }
   row.add("files", JsonList{to_json_line(files)});
   check_held();
   log().flush();

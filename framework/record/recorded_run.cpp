@@ -77,12 +77,11 @@ ResolvedConfig load_run(const PluginHost& host, const fs::path& directory) {
   const std::string name = fs::absolute(directory).lexically_normal().filename().string();
   const std::string recorded = read_identity(directory).identity;
   const bool other_folder = begins_with_id(name) && name.substr(0, kIdLength) != config.id;
-  if (recorded.empty() ? other_folder : recorded != config.identity) {
+  if (recorded.empty() ? other_folder : recorded != config.identity)
     throw Error((directory / "config.yaml").string(),
                 fmt::format("the config now has the id {}, the run has {}", config.id,
                             (recorded.empty() ? name : recorded).substr(0, kIdLength)),
                 "config.yaml was changed; run it with 'palpate run' instead");
-  }
   if (!other_folder) return config;
   throw Error(directory.string(), fmt::format("contains the run {}, but has the name of another run", config.id),
               "rename the folder");

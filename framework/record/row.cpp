@@ -52,11 +52,6 @@ std::string guarded(const std::string& text) {
   return computed && decimal_length(text) != text.size() ? "'" + text : text;
 }
 
-/// Appends the scalar in the format of a CSV file.
-void append_cell(std::string& out, const Scalar& value) {
-  append_scalar(out, value, [&](const std::string& text) { out += csv_text(guarded(text)); });
-}
-
 }  // namespace
 
 void append_number(std::string& out, double value) {
@@ -161,7 +156,7 @@ std::string to_csv(const std::vector<Row>& rows) {
       if (cell == nullptr) cell = &value;
     }
     for (const Scalar*& cell : cells) {
-      if (cell != nullptr) append_cell(out, *cell);
+      if (cell != nullptr) append_scalar(out, *cell, [&](const std::string& text) { out += csv_text(guarded(text)); });
       out += &cell == &cells.back() ? '\n' : ',';
     }
   }

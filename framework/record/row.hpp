@@ -5,11 +5,9 @@
 
 #include <palpate/record_fields.hpp>
 
-#include <cstdint>
 #include <optional>
 #include <string>
 #include <utility>
-#include <variant>
 #include <vector>
 
 namespace palpate {

@@ -108,11 +108,10 @@ void check_who_taps(const ResolvedConfig& config, TapMaker taps, const std::stri
   const std::string& backend = config.options.backend.type;
   const bool by_caller = backend == kCaller;
   if (by_caller == (taps == TapMaker::by_caller)) return;
-  if (by_caller) {
+  if (by_caller)
     throw Error("backend", "the taps of this run are made by the caller's own program, not by palpate",
                 command == "run" ? "run it with palpate.Experiment(...) in Python, or choose another backend"
                                  : "resume it with palpate.Experiment.resume(DIR) in Python");
-  }
   throw Error("backend", fmt::format("the taps of this run are made by backend {}, not by a caller", backend),
               command == "run" ? "choose the backend caller" : "resume it with 'palpate resume'");
 }
@@ -124,12 +123,11 @@ bool is_done_there(const RunEnvironment& environment, const ResolvedConfig& conf
   const std::string where = directory.string();
   const RunIdentity other = read_identity(directory);
   const bool has_name = other.name.empty() || other.name == config.options.name;
-  if (!has_name || (!other.identity.empty() && other.identity != config.identity)) {
+  if (!has_name || (!other.identity.empty() && other.identity != config.identity))
     throw Error(where,
                 has_name ? fmt::format("the folder contains another run with the id {}", config.id)
                          : fmt::format("the folder contains a run with the name '{}'", other.name),
                 "give this run another name");
-  }
   switch (status.state) {
     case RunStatus::State::done:
       if (read_run_record(directory).build() == build_hash(environment.host, config.notes.plugins)) return true;
@@ -291,10 +289,9 @@ std::unique_ptr<Run> Run::start(const RunEnvironment& environment, const Resolve
   }
   auto held = std::make_shared<RunDirectory>(directory);
   // Another process may have started or finished this run while this process built the experiment.
-  if (read_record(directory).state != RunStatus::State::absent) {
+  if (read_record(directory).state != RunStatus::State::absent)
     throw Error(directory.string(), "another process has just finished this run",
                 "repeat the command to see how it ended", Error::Kind::busy);
-  }
   sync_if_needed(config, *experiment, *held);
   held->write_config(to_yaml_with_places(config.tree));
   held->begin(manifest_of(environment, config));
@@ -321,10 +318,9 @@ std::unique_ptr<Run> Run::resume(const RunEnvironment& environment, const Resolv
   if (end && end->how == Ending::EndKind::done)
     return std::unique_ptr<Run>(new Run(config, report_done(environment, *held)));
   check_who_taps(config, options.taps, "resume");
-  if (end && end->how == Ending::EndKind::failed && !options.retry_failed) {
+  if (end && end->how == Ending::EndKind::failed && !options.retry_failed)
     throw Error(directory.string(), fmt::format("this run failed: {}", end->reason), "resume it with --retry-failed",
                 Error::Kind::run);
-  }
   const auto objection = options.force ? std::nullopt : objection_to_build(environment, config, before);
   if (objection) throw *objection;
   // The summary is out of date, or belongs to a record that was cut.
@@ -384,9 +380,8 @@ const RunConclusion& Run::run() {
 
 const TapRecord* Run::ask(const Eigen::VectorXd* scores) {
   if (is_finished()) return nullptr;
-  if (tap_ && scores != nullptr) {
+  if (tap_ && scores != nullptr)
     throw Error(fmt::format("tap {}", tap_->number()), "is pending", "call tell() with its result first");
-  }
   if (tap_) return &*tap_;
   const std::optional<TapOverride> override =
       scores != nullptr ? std::optional(TapOverride{*scores, {}}) : std::nullopt;

@@ -188,9 +188,8 @@ void RunDirectory::fail(const std::string& reason) {
   const std::string id = fs::absolute(path_).lexically_normal().filename().string();
   // A damaged record gets only the line `end`. This suffices, because the state of a run is read from the last line.
   const bool damaged = catch_error([&] { before(); }).has_value();
-  if (!damaged && !record_.begun()) {
+  if (!damaged && !record_.begun())
     begin(Tree::map({{"id", Tree::quote(id)}, {"at", Tree::quote(now_text())}, {"version", Tree::quote(kVersion)}}));
-  }
   if (!damaged && record_.ended()) begin_attempt({}, false);
   Row row;
   row.add("id", id);

@@ -6,7 +6,6 @@
 #include "experiment/tap_record.hpp"
 #include "record/files.hpp"
 #include "record/record_writer.hpp"
-#include "record/resolved_config.hpp"
 #include "record/row.hpp"
 
 #include <filesystem>

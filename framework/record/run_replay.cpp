@@ -5,14 +5,10 @@
 #include "experiment/unreached.hpp"
 #include "record/fields.hpp"
 
-#include <algorithm>
 #include <array>
 #include <numeric>
-#include <utility>
 
 namespace palpate {
-
-namespace fs = std::filesystem;
 
 /// Replaces the backend of a recorded run. This backend reads the same quantities and rejects the same lines as the
 /// original backend, and makes no taps.

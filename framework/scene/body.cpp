@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "scene/body.hpp"
 
-#include <palpate/math.hpp>
-
 #include <algorithm>
 
 namespace palpate {

@@ -44,12 +44,10 @@ void list(JointLag& effect, Fields& fields) {
       effect.delay,
       Field("delay", "time lag of the arm. The arm trails the set-point by this time multiplied by the arm's speed")
           .in(Unit::second)
-          .at_least(0)
-          .at_most(10)
+          .within(0, 10)
           .from("0.3-0.4 s: measured on a Baxter at 0.12 to 0.5 rad/s"));
   fields.real(effect.overshoot, Field("overshoot", "overshoot as a share of the step; 0 for no overshoot")
-                                    .at_least(0)
-                                    .at_most(0.9)
+                                    .within(0, 0.9)
                                     .from("0: Baxter's arm creeps up to its set-point"));
 }
 
@@ -58,8 +56,7 @@ void list(Latency& effect, Fields& fields) {
                                       "scale of the force signal's delay. For each tap, the delay is the absolute "
                                       "value of a normal variable with this standard deviation")
                                     .in(Unit::second)
-                                    .at_least(0)
-                                    .at_most(0.1)
+                                    .within(0, 0.1)
                                     .from("15 ms: one or two messages at 100 Hz, an estimate"));
 }
 
@@ -75,8 +72,7 @@ void list(HeightOffset& effect, Fields& fields) {
 void list(ForeignObjects& effect, Fields& fields) {
   fields.real(effect.probability,
               Field("probability", "share of the grid squares of the area that hold a foreign object")
-                  .at_least(0)
-                  .at_most(1)
+                  .within(0, 1)
                   .from("2 %: as false contacts"));
   fields.real(
       effect.height,
@@ -113,8 +109,7 @@ void list(PoseNoise& effect, Fields& fields) {
 void list(MissedContacts& effect, Fields& fields) {
   fields.real(effect.probability,
               Field("probability", "probability per tap that no force is felt during the whole descent")
-                  .at_least(0)
-                  .at_most(1)
+                  .within(0, 1)
                   .from("2 %: an estimate"));
 }
 
@@ -122,8 +117,7 @@ void list(FalseContacts& effect, Fields& fields) {
   fields.real(
       effect.probability,
       Field("probability", "probability per tap of a false contact in free air, caused by a jerk during the descent")
-          .at_least(0)
-          .at_most(1)
+          .within(0, 1)
           .from("2 %: an estimate"));
 }
 
@@ -152,10 +146,9 @@ void list(Shaft& effect, Fields& fields) {
 }
 
 void list(Push& effect, Fields& fields) {
-  fields.real(effect.probability, Field("probability", "probability that an object is pushed after a tap")
-                                      .at_least(0)
-                                      .at_most(1)
-                                      .from("2 %: an estimate"));
+  fields.real(
+      effect.probability,
+      Field("probability", "probability that an object is pushed after a tap").within(0, 1).from("2 %: an estimate"));
   fields.real(effect.distance, Field("distance", "distance by which an object is pushed, in a random direction")
                                    .in(Unit::metre)
                                    .at_least(0)

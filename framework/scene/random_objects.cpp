@@ -27,8 +27,8 @@ struct DrawOptions : Options {
 
   void list(Fields& fields) override {
     constexpr double kMost = 1000;
-    fields.integer(least, Field("least", "minimum number of objects").at_least(0).at_most(kMost).needed());
-    fields.integer(most, Field("most", "maximum number of objects").at_least(0).at_most(kMost).needed());
+    fields.integer(least, Field("least", "minimum number of objects").within(0, kMost).needed());
+    fields.integer(most, Field("most", "maximum number of objects").within(0, kMost).needed());
     fields.sections(of,
                     Field("of", "list of possible objects. Each object of the scene is drawn from this list").needed());
     fields.require(least <= most, "most", fmt::format("is less than 'least', which is {}", least));

@@ -12,14 +12,6 @@
 
 namespace palpate {
 
-namespace {
-
-std::string shown_length(const Tree& value) {
-  return readable(read_quantity(value, "", Unit::metre), Unit::metre, 3, LengthKind::place);
-}
-
-}  // namespace
-
 std::vector<std::string> partly_given_sizes(const Tree& resolved, const ResolveNotes& notes) {
   struct Object {
     std::string place;
@@ -36,7 +28,10 @@ std::vector<std::string> partly_given_sizes(const Tree& resolved, const ResolveN
     if (value == nullptr || !value->is_scalar() || !boost::ends_with(value->text, " m")) continue;
     const bool is_said = one.place != "default";
     object.has_size = object.has_size || is_said;
-    if (!is_said) object.left_out.push_back(fmt::format("{} {}", one.path.substr(dot + 1), shown_length(*value)));
+    if (is_said) continue;
+    const double length = read_quantity(*value, "", Unit::metre);
+    object.left_out.push_back(
+        fmt::format("{} {}", one.path.substr(dot + 1), readable(length, Unit::metre, 3, LengthKind::place)));
   }
   std::vector<std::string> out;
   for (const auto& [path, object] : objects) {

@@ -53,26 +53,22 @@ std::vector<Combination> product(const std::vector<Combination>& slower, const s
 
 /// Returns the keys of a map with their values.
 std::vector<SweepAxis> read_axes(const Tree& described, const std::string& name, const char* hint, ValueCount& count) {
-  if (!described.is_map()) {
+  if (!described.is_map())
     throw Error(described.place.text(), fmt::format("{}: expects a map of keys to values", name), hint);
-  }
   std::vector<SweepAxis> axes;
-  for (const Tree::Entry& entry : described.entries) {
+  for (const Tree::Entry& entry : described.entries)
     axes.push_back({entry.key, expand_values(entry.value, entry.key, count), entry.value});
-  }
   return axes;
 }
 
 void check_key(const SweepAxis& axis) {
   const std::string place = place_of(axis).text();
   check_path(axis.key, place);
-  if (is_below(axis.key, "expect")) {
+  if (is_below(axis.key, "expect"))
     throw Error(place, fmt::format("{}: expectations cannot be swept", axis.key),
                 "write it under 'expect:', which applies to the whole sweep");
-  }
-  if (is_below(axis.key, "sweep") || axis.key == "defaults") {
+  if (is_below(axis.key, "sweep") || axis.key == "defaults")
     throw Error(place, fmt::format("'{}' cannot be swept", axis.key), "list its names, as in kernel: [rbf, matern52]");
-  }
 }
 
 /// Removes a key of the command line from all blocks except the grid.
@@ -104,9 +100,8 @@ SweepOverrides parse_sweep_words(const std::vector<std::string>& words) {
     const std::string path = word.substr(0, word.find('='));
     if (is_below(path, "sweep")) {
       Override block = parse_override(word);
-      if (path == "sweep") {
+      if (path == "sweep")
         throw Error("command line", "'sweep' cannot be set as a whole", "set its blocks: \"sweep.where=taps > 12\"");
-      }
       const std::string name = path.substr(std::string("sweep.").size());
       check_block(name, block.value.place);
       out.blocks.emplace_back(name, std::move(block.value));
@@ -117,10 +112,9 @@ SweepOverrides parse_sweep_words(const std::vector<std::string>& words) {
       out.axes.push_back(std::move(axis));
       continue;
     }
-    if (axis.values.size() != 1) {
+    if (axis.values.size() != 1)
       throw Error(place_of(axis).text(), fmt::format("{}: expectations cannot be swept", axis.key),
                   "give it one value");
-    }
     out.expectations.push_back({axis.key, axis.values.front()});
   }
   return out;
@@ -132,9 +126,8 @@ SweepDescription::Block SweepDescription::read_block(const std::string& name, co
   Block block{name, {}};
   if (name == "list") {
     const char* const hint = "write [{key: value}, {key: value, other: [value, value]}]";
-    if (described.kind != Tree::Kind::list) {
+    if (described.kind != Tree::Kind::list)
       throw Error(described.place.text(), full + ": expects a list of settings", hint);
-    }
     for (const Tree& item : described.items) block.parts.push_back({read_axes(item, full, hint, count), false});
   } else if (name == "sobol") {
     block.parts.push_back({sobol_axes(described, count), true});
@@ -157,9 +150,8 @@ SweepDescription::Block SweepDescription::read_block(const std::string& name, co
 
 SweepDescription::SweepDescription(const Tree* config, const SweepOverrides& words)
     : written_(config != nullptr ? *config : Tree::map()) {
-  if (!written_.is_map()) {
+  if (!written_.is_map())
     throw Error(written_.place.text(), "sweep: expects a map", "write sweep: {grid: {key: [values]}}");
-  }
   for (const Tree::Entry& entry : written_.entries) check_block(entry.key, entry.place);
   for (const auto& [name, value] : words.blocks) written_.at(name) = value;
   auto& blocks = written_.entries;
@@ -210,13 +202,12 @@ void SweepDescription::combine() {
       for (const SweepAxis& axis : part.axes) {
         const std::size_t size = part.together ? axis.values.size() : rows.size() * axis.values.size();
         const std::size_t all = (own.size() + size) * combinations_.size();
-        if (all > kMaxCombinations || all * keys_.size() > kMaxSettings) {
+        if (all > kMaxCombinations || all * keys_.size() > kMaxSettings)
           throw Error(place_of(axis).text(),
                       all > kMaxCombinations
                           ? fmt::format("{}: the sweep has more than a million jobs", axis.key)
                           : fmt::format("{}: the sweep has {} jobs of {} keys", axis.key, all, keys_.size()),
                       "use fewer values");
-        }
         if (part.together) {
           rows.resize(size);
           for (std::size_t digit = 0; digit < size; ++digit) rows[digit].push_back({&axis, digit});

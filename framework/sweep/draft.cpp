@@ -33,9 +33,8 @@ void remove_abandoned(const fs::path& runs) {
     if (draft.filename().string().rfind(kPrefix, 0) != 0) continue;
     const fs::path lock = draft / "lock";
     const auto made = fs::last_write_time(lock, none);
-    if (!none && fs::file_time_type::clock::now() - made > kYoung && !FileLock::is_held(lock)) {
+    if (!none && fs::file_time_type::clock::now() - made > kYoung && !FileLock::is_held(lock))
       fs::remove_all(draft, none);
-    }
   }
 }
 

@@ -95,9 +95,8 @@ SweepPlan plan_sweep(Composer& composer, const PluginHost& host, const fs::path&
   const fs::path file = composer.found(named);
   const Tree base = composer.compose(file, read.expectations);
   const SweepDescription description(base.find("sweep"), read);
-  if (description.keys().empty()) {
+  if (description.keys().empty())
     throw Error(file.string(), "nothing to sweep", "give KEY=V1,V2 or a 'sweep:' in the config");
-  }
   const std::vector<Override> shared = shared_overrides(read.expectations, base);
   // The config without a combination. It is nullopt if the config is incomplete because only the sweep sets the missing
   // keys. Other errors in the config are found when the jobs are resolved.
@@ -118,11 +117,10 @@ SweepPlan plan_sweep(Composer& composer, const PluginHost& host, const fs::path&
       if (sink) sink(job, config);
     });
   }
-  if (!first) {
+  if (!first)
     throw Error(description.where_place(),
                 fmt::format("sweep.where: matches none of the {} combinations", description.combinations().size()),
                 "relax the condition, or sweep other values");
-  }
   planner.finish();
   SweepPlan plan{{{}, description.keys(), planner.take_jobs()},
                  written_config(file, base, alone, description.keys(), *first)};

@@ -56,12 +56,11 @@ void SweepPlanner::add(const Combination& combination, const JobSink& sink) {
   Job job{static_cast<int>(first_ + jobs_.size()), resolved.id, values_of(combination, composed, resolved)};
   const auto [twin, is_new] = seen_.emplace(job.id, jobs_.size());
   if (!is_new) {
-    if (identities_[twin->second] != resolved.identity) {
+    if (identities_[twin->second] != resolved.identity)
       throw Error(
           file_.string(),
           fmt::format("jobs {} and {} of the sweep have the same id {} by chance", twin->second, job.index, job.id),
           "sweep another seed");
-    }
     if (repeats_ == Repeats::dropped || differs_by_what_is_left_out(twin->second, job, combination)) return;
     throw same_run(jobs_[twin->second], job);
   }

@@ -3,9 +3,7 @@
 
 #include "experiment/experiment_options.hpp"
 #include "reading/read_file.hpp"
-#include "record/catalogue.hpp"
 #include "record/record_reader.hpp"
-#include "record/resolved_config.hpp"
 #include "record/run.hpp"
 #include "sweep/pooled_settings.hpp"
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 #include "config/keys.hpp"
-#include "record/resolved_config.hpp"
 #include "record/run.hpp"
 #include "sweep/description.hpp"
 #include "sweep/pooled_settings.hpp"

@@ -9,8 +9,6 @@
 #include <fmt/format.h>
 #include <boost/random/sobol.hpp>
 
-#include <charconv>
-
 namespace palpate {
 namespace {
 
@@ -23,22 +21,13 @@ ContinuousRange parse_range(const Tree::Entry& entry) {
   throw Error(entry.value.place.text(), entry.key + ": " + shown + " is not a continuous range", kContinuousHint);
 }
 
-/// Rounds to nine significant digits, which still distinguish all points.
-double shortened(double value) {
-  const std::string text = fmt::format("{:.9g}", value);
-  double out = value;
-  std::from_chars(text.data(), text.data() + text.size(), out);  // independent of the locale
-  return out;
-}
-
 std::int64_t read_samples(const Tree& described, const SourceLocation& place) {
   const Tree* samples = described.find("samples");
   if (samples == nullptr) throw Error(place.text(), "sweep.sobol: 'samples' is missing", "write samples: 64");
   const std::int64_t count = read_integer(*samples, "sweep.sobol.samples");
-  if (count < 1 || count > kMaxSamples) {
+  if (count < 1 || count > kMaxSamples)
     throw Error(samples->place.text(), fmt::format("sweep.sobol.samples: {} is out of range", count),
                 fmt::format("it must be 1 to {}", kMaxSamples));
-  }
   return count;
 }
 
@@ -63,23 +52,20 @@ std::vector<std::vector<double>> sobol_points(std::size_t count, std::size_t dim
 }
 
 std::vector<SweepAxis> sobol_axes(const Tree& described, ValueCount& count) {
-  if (!described.is_map()) {
+  if (!described.is_map())
     throw Error(described.place.text(), "sweep.sobol: expects samples and keys",
                 "write sobol: {samples: 64, keys: {kernel.length_scale: \"log_uniform(1 cm, 10 cm)\"}}");
-  }
   for (const Tree::Entry& entry : described.entries) {
-    if (entry.key != "samples" && entry.key != "keys") {
+    if (entry.key != "samples" && entry.key != "keys")
       throw Error(entry.place.text(), fmt::format("unknown option '{}' of sweep.sobol", entry.key),
                   suggestion(entry.key, {"samples", "keys"}));
-    }
   }
   const std::int64_t samples = read_samples(described, described.place);
   const Tree* keys = described.find("keys");
-  if (keys == nullptr || !keys->is_map() || keys->entries.empty() || keys->entries.size() > kMaxKeys) {
+  if (keys == nullptr || !keys->is_map() || keys->entries.empty() || keys->entries.size() > kMaxKeys)
     throw Error((keys != nullptr ? keys->place : described.place).text(),
                 "sweep.sobol.keys: expects a map of 1 to 1000 keys to ranges",
                 "write keys: {kernel.length_scale: \"log_uniform(1 cm, 10 cm)\"}");
-  }
   count.add(keys->entries.size() * static_cast<std::size_t>(samples), keys->place, "sweep.sobol");
   std::vector<SweepAxis> axes;
   std::vector<ContinuousRange> ranges;
@@ -88,8 +74,8 @@ std::vector<SweepAxis> sobol_axes(const Tree& described, ValueCount& count) {
     ranges.push_back(parse_range(entry));
   }
   for (const std::vector<double>& point : sobol_points(static_cast<std::size_t>(samples), axes.size(), "sweep.sobol")) {
-    for (std::size_t k = 0; k < axes.size(); ++k)
-      axes[k].values.push_back(number(shortened(ranges[k].at(point[k])), ranges[k].unit, axes[k].written));
+    for (std::size_t k = 0; k < axes.size(); ++k)  // nine digits still distinguish all points
+      axes[k].values.push_back(number(rounded(ranges[k].at(point[k]), 9), ranges[k].unit, axes[k].written));
   }
   return axes;
 }

@@ -2,7 +2,6 @@
 #include "sweep/sweep.hpp"
 
 #include "config/hash.hpp"
-#include "config/keys.hpp"
 #include "config/yaml.hpp"
 #include "record/files.hpp"
 #include "record/json.hpp"
@@ -206,10 +205,9 @@ Sweep read_sweep(const fs::path& directory) {
     throw Error(directory.string(), "is not the directory of a sweep", "it has no manifest.jsonl");
   SweepManifest manifest = read_sweep_manifest(directory);
   Sweep& sweep = manifest.sweep;
-  if (sweep_id(read_run_config(directory), sweep) != manifest.id) {
+  if (sweep_id(read_run_config(directory), sweep) != manifest.id)
     throw Error(directory.string(), "config.yaml or manifest.jsonl was changed after this sweep started",
                 "restore the old file, or run the changed config with 'palpate sweep'");
-  }
   return std::move(sweep);
 }
 

@@ -72,10 +72,9 @@ void TapSummaries::compute(const RunEnvironment& environment, std::size_t job) c
   refuse_link(directory);
   const Row& whole = *summaries_[job];
   const RecordedRun recording = read_recorded_run(environment.host, directory);
-  if (recording.rows.size() < taps_made(whole)) {
+  if (recording.rows.size() < taps_made(whole))
     throw Error(directory.string(), "its record has fewer taps than its summary",
                 "the file is damaged, run the job again");
-  }
   std::string lines;
   const std::string hash = summary_hash(whole);
   for (Row& row : earlier_summaries(environment, recording)) {

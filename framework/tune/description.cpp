@@ -5,6 +5,7 @@
 #include "config/keys.hpp"
 #include "config/quantity.hpp"
 #include "record/fields.hpp"
+#include "sweep/description.hpp"
 
 #include <palpate/error.hpp>
 
@@ -40,6 +41,12 @@ void check_key(const std::string& key, const Tree& value, bool is_searched) {
 /// Returns the value of an option of the command line as the config would have it.
 Tree word_value(const std::string& name, const std::string& text) { return parse_override(name + "=" + text).value; }
 
+/// Returns a text that equal quantities share, such as 1.7 cm and 17 mm.
+std::string comparable_text(const std::string& text) {
+  const auto quantity = any_quantity(text);
+  return quantity ? fmt::format("{} {}", quantity->value, unit_symbol(quantity->unit)) : text;
+}
+
 std::int64_t read_count(const Tree& value, const char* name, std::int64_t least, std::int64_t most) {
   const std::int64_t count = read_integer(value, std::string("tune.") + name);
   if (count >= least && count <= most) return count;
@@ -63,6 +70,23 @@ const RecordField& read_field(const Tree& block, const char* option) {
 }
 
 }  // namespace
+
+std::optional<double> TunedKey::position(const std::string& text) const {
+  if (range) {
+    const auto quantity = any_quantity(text);
+    const auto unit = any_quantity("1 " + range->unit);
+    return quantity && unit && quantity->unit == unit->unit ? std::optional(quantity->value / unit->value)
+                                                            : std::nullopt;
+  }
+  // A list may contain a type both with options and as a name, so the whole text is compared first.
+  for (std::string (*text_of)(const Tree&) : {value_text, condition_text}) {
+    const auto found = std::find_if(values.begin(), values.end(), [&](const Tree& one) {
+      return comparable_text(text_of(one)) == comparable_text(text);
+    });
+    if (found != values.end()) return static_cast<double>(found - values.begin());
+  }
+  return std::nullopt;
+}
 
 TuneDescription::TuneDescription(const Tree* config, const TuneWords& words)
     : written(config != nullptr ? *config : Tree::map()) {
@@ -96,10 +120,9 @@ TuneDescription::TuneDescription(const Tree* config, const TuneWords& words)
 
 void TuneDescription::read_keys(ValueCount& count) {
   const Tree* all = written.find("keys");
-  if (all == nullptr || !all->is_map() || all->entries.empty()) {
+  if (all == nullptr || !all->is_map() || all->entries.empty())
     refuse(all != nullptr ? *all : written, ".keys: expects a map of keys to lists or ranges",
            "give KEY=RANGE, for example \"kernel.length_scale=log_uniform(5mm,10cm)\"");
-  }
   for (const Tree::Entry& entry : all->entries) {
     if (const auto range = parse_continuous(entry.value, entry.key)) {
       check_key(entry.key, entry.value, true);
@@ -152,10 +175,9 @@ void TuneDescription::read_metric() {
 void TuneDescription::read_budget() {
   const Tree* runs = written.find("jobs");
   const Tree* time = written.find("time");
-  if ((runs == nullptr) == (time == nullptr)) {
+  if ((runs == nullptr) == (time == nullptr))
     refuse(written, runs == nullptr ? ": no budget is given" : ": 'jobs' and 'time' exclude each other",
            "give one of them: --jobs 400 or --time 10min");
-  }
   if (runs != nullptr) jobs = static_cast<std::size_t>(read_count(*runs, "jobs", 1, kMostJobs));
   if (time != nullptr) {
     seconds = read_quantity(*time, "tune.time", Unit::second);

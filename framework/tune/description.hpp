@@ -19,6 +19,11 @@ struct TunedKey {
   std::vector<Tree> values;              ///< empty if `range` is set; else at least two
   std::optional<ContinuousRange> range;  ///< set if the value is `uniform(...)` or `log_uniform(...)`
   Tree written;                          ///< as in the config; its location is named in errors
+
+  /// Returns the position of a value that was written in a config: its index in the list, or its number in the unit of
+  /// the range. Values are compared as quantities, too: 1.7 cm is 17 mm. Returns nullopt for a value that is not in the
+  /// list, and for a value that is not a quantity in the dimension of the range.
+  std::optional<double> position(const std::string& text) const;
 };
 
 /// The words of `palpate tune CONFIG` that replace parts of the block `tune:`.

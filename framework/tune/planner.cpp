@@ -2,12 +2,7 @@
 #include "tune/planner.hpp"
 
 #include "config/catch_error.hpp"
-#include "config/keys.hpp"
 #include "sweep/plan.hpp"
-
-#include <palpate/error.hpp>
-
-#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>

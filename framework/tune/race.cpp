@@ -63,9 +63,8 @@ void drop_losers(const RaceRules& rules, const RaceTable& results, const RaceTab
     // A setting of an earlier stage is not dropped before it was compared on all of its seeds.
     if (results[one.row].size() <= state.seeds) decision.losers.push_back(one);
   }
-  for (const Loser& one : decision.losers) {
+  for (const Loser& one : decision.losers)
     state.racing.erase(std::remove(state.racing.begin(), state.racing.end(), one.row), state.racing.end());
-  }
 }
 
 /// Begins the next stage of a search: the best settings remain, and others may join.

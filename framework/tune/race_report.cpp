@@ -22,12 +22,6 @@ namespace {
 
 constexpr std::size_t kMostRows = 10;
 
-/// Returns the mean of a setting over its seeds in the race, as the metric has it. Missing values count as in the race.
-double mean_of_setting(const RaceResults& results, std::size_t setting) {
-  const double mean = mean_of(results.table[setting]);
-  return results.description.more_is_better ? -mean : mean;
-}
-
 const Loser* loss_of(const RaceRecord& race, std::size_t setting) {
   for (const Loser& one : race.losers) {
     if (one.row == setting) return &one;
@@ -35,60 +29,20 @@ const Loser* loss_of(const RaceRecord& race, std::size_t setting) {
   return nullptr;
 }
 
-/// Returns all settings: the winner, the others in the race by their means, then those that lost, the last one first.
+/// Returns all settings: the winner, the others in the race by their means, then those that left, the last one first.
 std::vector<std::size_t> listed_settings(const RaceResults& results) {
   const RaceRecord& race = results.race;
-  const std::vector<double> means = means_of(results.table);
   std::vector<std::size_t> out(race.settings.size());
   std::iota(out.begin(), out.end(), std::size_t{0});
   const auto key = [&](std::size_t setting) {
     const bool wins = std::count(race.front.begin(), race.front.end(), setting) > 0;
     const bool races = std::count(race.state.racing.begin(), race.state.racing.end(), setting) > 0;
-    // Settings with fewer seeds lost earlier.
-    const std::size_t most = results.race.race_jobs;
-    return std::make_tuple(!wins, !races, races ? std::size_t{0} : most - results.table[setting].size(),
-                           means[setting]);
+    // Settings with fewer seeds left earlier.
+    return std::make_tuple(!wins, !races, races ? 0 : race.race_jobs - race.settings[setting].jobs.size(),
+                           results.description.more_is_better ? -results.means[setting] : results.means[setting]);
   };
   std::stable_sort(out.begin(), out.end(), [&](std::size_t a, std::size_t b) { return key(a) < key(b); });
   return out;
-}
-
-bool is_best(const RaceResults& results, std::size_t setting) {
-  return std::count(results.best.begin(), results.best.end(), setting) > 0;
-}
-
-/// Returns "config as it stands", "best" or the reason why a setting lost; "" if there is nothing to remark.
-std::string remark_about(const RaceResults& results, std::size_t setting, const DisplayScale& scale) {
-  const RaceRecord& race = results.race;
-  std::vector<std::string> out;
-  if (setting == 0) out.emplace_back("config as it stands");
-  if (is_best(results, setting)) out.emplace_back(results.description.cost ? "on the front" : "best");
-  // On a front, the difference may be one of the cost, which has another unit.
-  if (const Loser* loss = loss_of(race, setting))
-    out.push_back(fmt::format("lost after {} seeds: {}p {:.2g}", loss->seeds,
-                              results.description.cost ? "" : scale.quantity(loss->difference) + " worse, ", loss->p));
-  return fmt::format("{}", fmt::join(out, ", "));
-}
-
-std::string settings_words(const RaceResults& results, std::size_t setting) {
-  std::vector<std::string> out;
-  const std::vector<std::string>& values = results.race.settings[setting].values;
-  for (std::size_t key = 0; key < values.size(); ++key) {
-    if (!values[key].empty()) out.push_back(fmt::format("{}={}", results.description.keys[key].key, values[key]));
-  }
-  return fmt::format("{}", fmt::join(out, " "));
-}
-
-DisplayScale scale_of(const RaceResults& results) {
-  std::vector<double> means;
-  for (std::size_t setting = 0; setting < results.race.settings.size(); ++setting) {
-    means.push_back(mean_of_setting(results, setting));
-  }
-  return readable_scale(unit_of_column(results.description.metric), means);
-}
-
-std::string counted_settings(std::size_t count) {
-  return fmt::format("{} setting{}", count, count == 1 ? " is" : "s are");
 }
 
 /// Returns the values, with the worst one in place of missing ones.
@@ -135,17 +89,43 @@ std::string front_text(const RaceResults& results) {
   return table.text();
 }
 
-/// Returns the sentence about the fresh seeds, or the reason why there are none.
+}  // namespace
+
+std::string settings_words(const RaceResults& results, std::size_t setting) {
+  std::vector<std::string> out;
+  const std::vector<std::string>& values = results.race.settings[setting].values;
+  for (std::size_t key = 0; key < values.size(); ++key) {
+    if (!values[key].empty()) out.push_back(fmt::format("{}={}", results.description.keys[key].key, values[key]));
+  }
+  return fmt::format("{}", fmt::join(out, " "));
+}
+
+std::string remark_about(const RaceResults& results, std::size_t setting) {
+  std::vector<std::string> out;
+  if (setting == 0) out.emplace_back("config as it stands");
+  if (results.is_best(setting)) out.emplace_back(results.description.cost ? "on the front" : "best");
+  // On a front, the difference may be one of the cost, which has another unit.
+  if (const Loser* loss = loss_of(results.race, setting))
+    out.push_back(fmt::format("lost after {} seeds: {}p {:.2g}", loss->seeds,
+                              results.description.cost ? "" : results.scale.quantity(loss->difference) + " worse, ",
+                              loss->p));
+  if (const std::size_t stage = results.race.settings[setting].left_out_of; stage > 0)
+    out.push_back(fmt::format("not taken into stage {}", stage));
+  return fmt::format("{}", fmt::join(out, ", "));
+}
+
 std::string fresh_words(const RaceResults& results) {
+  const std::size_t front = results.race.front.size();
   if (results.description.cost)
-    return fmt::format("{} on the front of {} and {}", counted_settings(results.race.front.size()),
+    return fmt::format("{} setting{} on the front of {} and {}", front, front == 1 ? " is" : "s are",
                        results.description.metric, *results.description.cost);
   if (results.race.front.front() == 0) return "the config as it stands is the best setting";
+  if (results.values.unfinished > 0) return "the runs on fresh seeds have not ended";
   const MeanEstimate& gain = results.gain;
   if (gain.count == 0) return "no fresh seeds were run";
-  const DisplayScale scale = scale_of(results);
-  std::string words = fmt::format("gain over the config as it stands, on {} that had no part in the choice: {}",
-                                  units_words(gain.clusters, true), scale.with_unit(scale.estimate(gain)));
+  std::string words =
+      fmt::format("gain over the config as it stands, on {} that had no part in the choice: {}",
+                  units_words(gain.clusters, true), results.scale.with_unit(results.scale.estimate(gain)));
   if (results.best.front() == 0)
     words += "; the config as it stands is better and stays the best";
   else if (gain.interval && gain.interval->low <= 0.0)
@@ -153,17 +133,17 @@ std::string fresh_words(const RaceResults& results) {
   return words;
 }
 
-}  // namespace
-
 RaceResults::RaceResults(const Sweep& race_sweep, const TuneDescription& tuned, const RaceRecord& record,
                          const RaceValues& race_values)
     : sweep(race_sweep),
       description(tuned),
       race(record),
       values(race_values),
-      table(race_table(record, race_values.metric)),
+      means(means_of(race_table(record, race_values.metric))),
       best(record.front) {
-  if (!race.has_ended() || description.cost) return;
+  for (double& one : means) one = description.more_is_better ? -one : one;
+  scale = readable_scale(unit_of_column(description.metric), means);
+  if (!race.has_ended() || description.cost || values.unfinished > 0) return;
   const std::vector<std::size_t>& own = race.settings[0].fresh;
   const std::vector<std::size_t>& other = race.settings[race.front.front()].fresh;
   const std::vector<double> metric = filled(values.metric);
@@ -174,6 +154,8 @@ RaceResults::RaceResults(const Sweep& race_sweep, const TuneDescription& tuned, 
   if (gain.interval && gain.interval->high < 0.0) best = {0};
 }
 
+bool RaceResults::is_best(std::size_t setting) const { return std::count(best.begin(), best.end(), setting) > 0; }
+
 std::vector<Row> race_rows(const RaceResults& results) {
   std::vector<Row> out;
   for (std::size_t setting = 0; setting < results.race.settings.size(); ++setting) {
@@ -183,13 +165,14 @@ std::vector<Row> race_rows(const RaceResults& results) {
     for (std::size_t key = 0; key < one.values.size(); ++key)
       row.add(results.description.keys[key].key, one.values[key]);
     row.add("seeds", static_cast<std::int64_t>(one.jobs.size()));
-    row.add(results.description.metric, mean_of_setting(results, setting));
+    row.add(results.description.metric, results.means[setting]);
     const Loser* loss = loss_of(results.race, setting);
-    row.add("lost_after_seeds", loss != nullptr ? std::optional(static_cast<std::int64_t>(loss->seeds)) : std::nullopt);
+    const std::size_t left = loss != nullptr ? loss->seeds : one.left_out_of > 0 ? one.jobs.size() : 0;
+    row.add("lost_after_seeds", left > 0 ? std::optional(static_cast<std::int64_t>(left)) : std::nullopt);
     row.add("difference",
             loss != nullptr && !results.description.cost ? std::optional(loss->difference) : std::nullopt);
     row.add("p", loss != nullptr ? std::optional(loss->p) : std::nullopt);
-    row.add("is_best", is_best(results, setting));
+    row.add("is_best", results.is_best(setting));
     const std::vector<std::size_t>& front = results.race.front;
     const MeanEstimate gain = !front.empty() && setting == front.front() ? results.gain : MeanEstimate{};
     row.add("fresh_seeds", static_cast<std::int64_t>(gain.clusters));
@@ -199,20 +182,8 @@ std::vector<Row> race_rows(const RaceResults& results) {
   return out;
 }
 
-RaceOfPage race_of_page(const RaceResults& results) {
-  const DisplayScale scale = scale_of(results);
-  const RaceRecord& race = results.race;
-  RaceOfPage out;
-  for (std::size_t setting = 0; setting < race.settings.size(); ++setting)
-    out.settings.push_back({settings_words(results, setting), remark_about(results, setting, scale),
-                            loss_of(race, setting) != nullptr, is_best(results, setting)});
-  if (race.has_ended()) out.end = fmt::format("The race ended because {}; {}.", race.end, fresh_words(results));
-  return out;
-}
-
 std::string race_text(const RaceResults& results) {
   const RaceRecord& race = results.race;
-  const DisplayScale scale = scale_of(results);
   Table table;
   const std::vector<std::size_t> listed = listed_settings(results);
   for (std::size_t i = 0; i < listed.size(); ++i) {
@@ -223,8 +194,8 @@ std::string race_text(const RaceResults& results) {
     for (std::size_t key = 0; key < values.size(); ++key)
       table.show(results.description.keys[key].key, values[key], Table::Kind::text);
     table.show("seeds", std::to_string(one.jobs.size()));
-    table.show(scale.title(results.description.metric), scale.number(mean_of_setting(results, listed[i])));
-    table.show("", remark_about(results, listed[i], scale), Table::Kind::text);
+    table.show(results.scale.title(results.description.metric), results.scale.number(results.means[listed[i]]));
+    table.show("", remark_about(results, listed[i]), Table::Kind::text);
   }
   std::string out = table.text();
   if (listed.size() > kMostRows) out += fmt::format("{} settings in all: race.csv\n", listed.size());

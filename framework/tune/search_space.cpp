@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "tune/search_space.hpp"
 
-#include "config/quantity.hpp"
-#include "sweep/description.hpp"
 #include "sweep/sobol.hpp"
 
 #include <palpate/error.hpp>
@@ -11,7 +9,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <utility>
 
@@ -20,21 +17,6 @@ namespace {
 
 constexpr std::size_t kMostSettings = 10'000;
 constexpr double kRedraw = 0.1;  ///< probability of a new value of a list
-
-/// Rounds to six significant digits: finer differences of a setting do not matter, and tables remain readable.
-double shortened(double value) {
-  const std::string text = fmt::format("{:.6g}", value);
-  double out = value;
-  std::from_chars(text.data(), text.data() + text.size(), out);  // independent of the locale
-  return out;
-}
-
-/// Returns a standard normal number by the method of Box and Muller.
-double normal(Random& random) {
-  constexpr double kTurn = 6.283185307179586;
-  const double radius = std::sqrt(-2.0 * math::log(1.0 - random.uniform()));
-  return radius * math::cos(kTurn * random.uniform());
-}
 
 }  // namespace
 
@@ -88,7 +70,7 @@ Point SearchSpace::near(const Point& parent, double spread, Random& random) cons
   for (std::size_t key = 0; key < keys_.size(); ++key) {
     if (keys_[key].range) {
       const double scale = kScales[random.index(3)];
-      out[key] = std::clamp(parent[key] + spread * scale * normal(random), 0.0, 1.0);
+      out[key] = std::clamp(parent[key] + spread * scale * random.normal(), 0.0, 1.0);
     } else if (random.uniform() < kRedraw) {
       out[key] = static_cast<double>(random.index(keys_[key].values.size()));
     }
@@ -99,7 +81,8 @@ Point SearchSpace::near(const Point& parent, double spread, Random& random) cons
 Tree SearchSpace::value(std::size_t key, double coordinate) const {
   const TunedKey& tuned = keys_[key];
   if (!tuned.range) return tuned.values[static_cast<std::size_t>(coordinate)];
-  double value = shortened(tuned.range->at(coordinate));
+  // Finer differences of a setting do not matter, and with six digits tables remain readable.
+  double value = rounded(tuned.range->at(coordinate), 6);
   if (is_whole_[key])
     value = std::clamp(std::round(tuned.range->at(coordinate)), std::ceil(tuned.range->first),
                        std::floor(tuned.range->last));
@@ -107,25 +90,12 @@ Tree SearchSpace::value(std::size_t key, double coordinate) const {
 }
 
 std::optional<double> SearchSpace::coordinate(std::size_t key, const std::string& text) const {
-  const TunedKey& tuned = keys_[key];
-  if (!tuned.range) {
-    // A list may contain a type both with options and as a name, so the whole text is compared first.
-    for (std::string (*text_of)(const Tree&) : {value_text, condition_text}) {
-      for (std::size_t value = 0; value < tuned.values.size(); ++value) {
-        if (text_of(tuned.values[value]) == text) return static_cast<double>(value);
-      }
-    }
-    return std::nullopt;
-  }
-  const auto si = [&](double value) { return any_quantity(number(value, tuned.range->unit, tuned.written).text); };
-  const auto own = any_quantity(text);
-  const auto first = si(tuned.range->first);
-  const auto last = si(tuned.range->last);
-  if (!own || !first || !last || own->unit != first->unit) return std::nullopt;
-  const double value = std::clamp(own->value, first->value, last->value);
-  const double share = tuned.range->logarithmic
-                           ? math::log(value / first->value) / math::log(last->value / first->value)
-                           : (value - first->value) / (last->value - first->value);
+  const auto& range = keys_[key].range;
+  const std::optional<double> position = keys_[key].position(text);
+  if (!range || !position) return position;
+  const double value = std::clamp(*position, range->first, range->last);
+  const double share = range->logarithmic ? math::log(value / range->first) / math::log(range->last / range->first)
+                                          : (value - range->first) / (range->last - range->first);
   return std::clamp(share, 0.0, 1.0);
 }
 

@@ -23,17 +23,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// Fields of a round's line in manifest.jsonl.
-constexpr const char* kStage = "stage";
-constexpr const char* kBudget = "budget";
-constexpr const char* kStageEnd = "stage_end";
-constexpr const char* kSeeds = "seeds";
-constexpr const char* kRacing = "racing";
-constexpr const char* kDropped = "dropped";
-constexpr const char* kSeconds = "seconds";
-constexpr const char* kEnd = "end";
-constexpr const char* kFront = "front";
-
 constexpr std::size_t kLeastBudget = 60;  ///< of a search: six settings on four seeds, and the stages after them
 constexpr std::size_t kMostBudget = std::size_t{1} << 40;
 constexpr std::size_t kDrawsPerSetting = 20;
@@ -41,11 +30,11 @@ constexpr std::size_t kDrawsPerSetting = 20;
 Row round_row(const RaceDecision& decision, std::optional<double> seconds) {
   Row row;
   const RaceState& state = decision.state;
-  row.add(kStage, static_cast<std::int64_t>(state.stage));
-  row.add(kBudget, static_cast<std::int64_t>(state.budget));
-  row.add(kStageEnd, static_cast<std::int64_t>(state.stage_end));
-  row.add(kSeeds, static_cast<std::int64_t>(state.seeds));
-  row.add(kRacing, JsonList{fmt::format("[{}]", fmt::join(state.racing, ", "))});
+  row.add("stage", static_cast<std::int64_t>(state.stage));
+  row.add("budget", static_cast<std::int64_t>(state.budget));
+  row.add("stage_end", static_cast<std::int64_t>(state.stage_end));
+  row.add("seeds", static_cast<std::int64_t>(state.seeds));
+  row.add("racing", JsonList{fmt::format("[{}]", fmt::join(state.racing, ", "))});
   std::vector<Row> dropped;
   for (const Loser& one : decision.losers) {
     Row& loser = dropped.emplace_back();
@@ -54,11 +43,11 @@ Row round_row(const RaceDecision& decision, std::optional<double> seconds) {
     loser.add("difference", one.difference);
     loser.add("p", one.p);
   }
-  row.add(kDropped, list_of(dropped));
-  if (seconds) row.add(kSeconds, *seconds);
+  row.add("dropped", list_of(dropped));
+  if (seconds) row.add("seconds", *seconds);
   if (decision.end.empty()) return row;
-  row.add(kEnd, decision.end);
-  row.add(kFront, JsonList{fmt::format("[{}]", fmt::join(decision.front, ", "))});
+  row.add("end", decision.end);
+  row.add("front", JsonList{fmt::format("[{}]", fmt::join(decision.front, ", "))});
   return row;
 }
 
@@ -67,24 +56,27 @@ Error damaged(const Sweep& sweep, const char* field) {
           "the file is damaged: put it back as it was"};
 }
 
-/// Returns a whole number of a round. Throws Error if it is missing, negative, or not below `limit`.
-std::size_t whole(const Row& row, const char* name, std::size_t limit, const Sweep& sweep) {
-  const std::optional<double> value = row.number(name);
+/// Returns a number of the field `name` of a round. Throws Error if it is missing, negative, or not below `limit`.
+std::size_t whole(std::optional<double> value, const char* name, std::size_t limit, const Sweep& sweep) {
   if (value && *value >= 0.0 && *value < static_cast<double>(limit)) return static_cast<std::size_t>(*value);
   throw damaged(sweep, name);
+}
+
+std::size_t whole(const Row& row, const char* name, std::size_t limit, const Sweep& sweep) {
+  return whole(row.number(name), name, limit, sweep);
+}
+
+JsonList list_in(const Row& row, const char* name) {
+  const Scalar* value = row.find(name);
+  return value != nullptr && std::holds_alternative<JsonList>(*value) ? std::get<JsonList>(*value) : JsonList{"[]"};
 }
 
 /// Returns the numbers in a list such as [0, 3, 7].
 std::vector<std::size_t> numbers_in(const Row& row, const char* name, std::size_t limit, const Sweep& sweep) {
   std::vector<std::size_t> out;
-  const Scalar* value = row.find(name);
-  const auto* list = value != nullptr ? std::get_if<JsonList>(value) : nullptr;
-  const Tree tree = parse_json(fmt::format("{{\"list\": {}}}", list != nullptr ? list->text : "[]"), sweep.directory);
-  for (const Tree& item : tree.find("list")->items) {
-    Row one;
-    one.add(name, static_cast<double>(std::atoll(item.text.c_str())));
-    out.push_back(whole(one, name, limit, sweep));
-  }
+  const Tree tree = parse_json(fmt::format("{{\"list\": {}}}", list_in(row, name).text), sweep.directory);
+  for (const Tree& item : tree.find("list")->items)
+    out.push_back(whole(std::atof(item.text.c_str()), name, limit, sweep));
   return out;
 }
 
@@ -156,22 +148,26 @@ std::vector<SettingValues> draw_settings(const TunePlanner& planner, const RaceR
   return out;
 }
 
+/// Plans a recorded job of a setting again. Throws Error if its id has changed; `sink` is then called, too.
+void plan_again(const TunePlanner& planner, const Sweep& sweep, const RaceRecord& race, std::size_t setting,
+                const Job& recorded, const JobSink& sink) {
+  const auto seed = static_cast<std::size_t>(std::atoll(recorded.values.back().c_str()) - planner.own().options.seed);
+  const PlannedSetting planned{values_of_setting(planner, race, setting), seed, seed + 1};
+  if (planner.plan({planned}, 0, false, sink).front().id == recorded.id) return;
+  throw Error(sweep.directory.string(),
+              "the config groups, the files or the plugins of this race were changed since it began",
+              "restore them, or begin a new race with 'palpate tune'");
+}
+
 /// Throws Error unless the first jobs of these settings would be planned as they are recorded.
 void check_unchanged(const TunePlanner& planner, const Sweep& sweep, const RaceRecord& race,
                      const std::vector<std::size_t>& settings) {
-  std::vector<PlannedSetting> first;
-  for (const std::size_t one : settings) first.push_back({values_of_setting(planner, race, one), 0, 1});
-  const std::vector<Job> jobs = planner.plan(first, 0, false, [](const Job&, const ResolvedConfig&) {});
-  for (std::size_t i = 0; i < settings.size(); ++i) {
-    const Job& recorded = sweep.jobs[race.settings[settings[i]].jobs.front()];
-    if (i < jobs.size() && jobs[i].id == recorded.id) continue;
-    throw Error(sweep.directory.string(),
-                "the config groups, the files or the plugins of this race were changed since it began",
-                "restore them, or begin a new race with 'palpate tune'");
-  }
+  for (const std::size_t one : settings)
+    plan_again(planner, sweep, race, one, sweep.jobs[race.settings[one].jobs.front()],
+               [](const Job&, const ResolvedConfig&) {});
 }
 
-/// Writes the config of a job that a round adds. A process that was killed may have written it before.
+/// Writes the config of a job, unless it exists.
 void write_job(const Sweep& sweep, const Job& job, const ResolvedConfig& config) {
   const fs::path directory = sweep.directory / "jobs" / job.id;
   if (is_there(directory / "config.yaml")) return;
@@ -233,10 +229,10 @@ void check_state(const RaceRecord& race, const Sweep& sweep) {
   const std::vector<std::size_t>& racing = race.state.racing;
   if (racing.empty() || !std::is_sorted(racing.begin(), racing.end()) ||
       std::adjacent_find(racing.begin(), racing.end()) != racing.end())
-    throw damaged(sweep, kRacing);
+    throw damaged(sweep, "racing");
   for (const std::size_t one : racing) {
     if (race.state.seeds < kFirstSeeds || race.settings[one].jobs.size() < race.state.seeds)
-      throw damaged(sweep, kSeeds);
+      throw damaged(sweep, "seeds");
   }
 }
 
@@ -252,38 +248,57 @@ RaceRecord read_race(const Sweep& sweep, const TuneDescription& description) {
   std::map<std::vector<std::string>, std::size_t> numbers;
   std::size_t next = 0;
   for (const SweepRound& round : sweep.rounds) {
-    const bool is_fresh = round.decision.find(kEnd) != nullptr;
-    if (is_fresh && &round != &sweep.rounds.back()) throw damaged(sweep, kEnd);
+    const bool is_fresh = round.decision.find("end") != nullptr;
+    if (is_fresh && &round != &sweep.rounds.back()) throw damaged(sweep, "end");
     for (; next < round.jobs; ++next) {
       const std::vector<std::string> values = tuned_values(sweep.jobs[next], keys);
       const auto [number, is_new] = numbers.emplace(values, out.settings.size());
-      if (is_new) out.settings.push_back({values, {}, {}});
+      if (is_new) out.settings.push_back({values, {}, {}, 0});
       RacedSetting& setting = out.settings[number->second];
       (is_fresh ? setting.fresh : setting.jobs).push_back(next);
     }
     if (!is_fresh) out.race_jobs = next;
     const std::size_t all = out.settings.size();
-    const Scalar* list = round.decision.find(kDropped);
-    for (const Row& one : rows_of(list != nullptr && std::holds_alternative<JsonList>(*list) ? std::get<JsonList>(*list)
-                                                                                             : JsonList{"[]"}))
+    std::vector<bool> races(all);
+    for (const std::size_t one : numbers_in(round.decision, "racing", all, sweep)) races[one] = true;
+    for (const Row& one : rows_of(list_in(round.decision, "dropped")))
       out.losers.push_back({whole(one, "setting", all, sweep), whole(one, "seeds", next + 1, sweep),
                             one.number("difference").value_or(0.0), one.number("p").value_or(0.0)});
+    for (const Loser& one : out.losers) races[one.row] = true;
+    for (std::size_t one = 0; one < all; ++one) {
+      if (!races[one] && out.settings[one].left_out_of == 0)
+        out.settings[one].left_out_of = whole(round.decision, "stage", kLastStage + 1, sweep);
+    }
   }
   const Row& last = sweep.rounds.back().decision;
   const std::size_t all = out.settings.size();
-  out.state = {whole(last, kStage, kLastStage + 1, sweep), whole(last, kBudget, kMostBudget, sweep),
-               whole(last, kStageEnd, kMostBudget, sweep), whole(last, kSeeds, sweep.jobs.size() + 1, sweep),
-               numbers_in(last, kRacing, all, sweep)};
+  out.state = {whole(last, "stage", kLastStage + 1, sweep), whole(last, "budget", kMostBudget, sweep),
+               whole(last, "stage_end", kMostBudget, sweep), whole(last, "seeds", sweep.jobs.size() + 1, sweep),
+               numbers_in(last, "racing", all, sweep)};
   check_state(out, sweep);
-  out.seconds = last.number(kSeconds).value_or(0.0);
-  out.end = last.text(kEnd);
+  out.seconds = last.number("seconds").value_or(0.0);
+  out.end = last.text("end");
   if (!out.has_ended()) return out;
-  out.front = numbers_in(last, kFront, all, sweep);
+  out.front = numbers_in(last, "front", all, sweep);
   for (const std::size_t one : out.front) {
     if (out.settings[one].jobs.empty()) throw damaged(sweep, "front");
   }
   if (out.front.empty()) throw damaged(sweep, "front");
   return out;
+}
+
+void replace_lost(const TunePlanner& planner, const Sweep& sweep, const RaceRecord& race) {
+  for (std::size_t setting = 0; setting < race.settings.size(); ++setting) {
+    std::vector<std::size_t> jobs = race.settings[setting].jobs;
+    jobs.insert(jobs.end(), race.settings[setting].fresh.begin(), race.settings[setting].fresh.end());
+    for (const std::size_t job : jobs) {
+      const Job& recorded = sweep.jobs[job];
+      if (is_there(job_directory(sweep, recorded) / "config.yaml")) continue;
+      plan_again(planner, sweep, race, setting, recorded, [&](const Job& again, const ResolvedConfig& config) {
+        if (again.id == recorded.id) write_job(sweep, again, config);
+      });
+    }
+  }
 }
 
 void read_results(const Sweep& sweep, const TuneDescription& description, RaceValues& out) {
@@ -294,6 +309,7 @@ void read_results(const Sweep& sweep, const TuneDescription& description, RaceVa
     return value.status == ValueStatus::counted ? std::optional(value.value) : std::nullopt;
   };
   read_jobs(sweep, next, read_outcome, [&](std::size_t, const std::optional<Row>& row) {
+    out.unfinished += row ? 0 : 1;
     std::optional<double> value = value_of(row, description.metric);
     if (value && description.more_is_better) value = -*value;
     out.metric.push_back(value);

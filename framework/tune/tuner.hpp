@@ -20,6 +20,7 @@ struct RacedSetting {
   std::vector<std::string> values;  ///< values of the tuned keys, as in Job::values
   std::vector<std::size_t> jobs;    ///< its jobs on the first seeds, in the order of the seeds
   std::vector<std::size_t> fresh;   ///< its jobs on fresh seeds, likewise
+  std::size_t left_out_of = 0;      ///< first stage into which it was not taken although it had not lost; 0: none
 };
 
 /// A race as the manifest of its sweep has it.
@@ -42,10 +43,15 @@ RaceRecord read_race(const Sweep& sweep, const TuneDescription& description);
 struct RaceValues {
   std::vector<std::optional<double>> metric;  ///< the metric, or its negative if more is better: less is better
   std::vector<std::optional<double>> cost;    ///< empty if there is no cost
+  std::size_t unfinished = 0;                 ///< number of jobs that had not ended
 };
 
-/// Appends the results of the jobs after the first `out.metric.size()`. All jobs must have ended.
+/// Appends the results of the jobs after the first `out.metric.size()`. Before a decision, all jobs must have ended.
 void read_results(const Sweep& sweep, const TuneDescription& description, RaceValues& out);
+
+/// Writes configs of jobs again if they were deleted, because a job without its config cannot be run. Throws Error if
+/// the groups of such a job were changed since it was planned.
+void replace_lost(const TunePlanner& planner, const Sweep& sweep, const RaceRecord& race);
 
 /// Returns one row per setting: its results in the order of the seeds. A missing result counts as the worst result of
 /// the whole race, because a setting whose runs fail must not win.

@@ -17,8 +17,6 @@
 
 namespace palpate {
 
-namespace fs = std::filesystem;
-
 namespace {
 
 /// Largest number of values in all stored maps. They take about 10 MB in a page, which every browser can hold.
@@ -40,7 +38,7 @@ PagePosition parse_position(const std::string& at) {
 
 }  // namespace
 
-RunFollower::RunFollower(const RunEnvironment& environment, fs::path directory)
+RunFollower::RunFollower(const RunEnvironment& environment, std::filesystem::path directory)
     : environment_(environment), directory_(std::move(directory)), log_(directory_ / kRecordFile) {}
 
 bool RunFollower::goes_on() const { return is_running(directory_); }
@@ -110,10 +108,9 @@ void RunFollower::add_times() {
 }
 
 void RunFollower::replay_next_tap() {
-  if (!recording_) {
+  if (!recording_)
     recording_ = std::make_unique<RecordedRun>(
         RecordedRun{directory_, load_run(environment_.host, directory_), {}, {}, {}, manifest_, {}});
-  }
   add_times();
   recording_->taps.push_back(read_taps({pending_.front()}, log_.file()).front());
   recording_->rows.push_back(std::move(pending_.front()));

@@ -2,7 +2,6 @@
 // A run that is not finished, replayed tap by tap while its record grows.
 #pragma once
 
-#include "record/run_replay.hpp"
 #include "report/history.hpp"
 #include "watch/growing_log.hpp"
 #include "watch/live_record.hpp"

@@ -39,11 +39,10 @@ namespace beast = boost::beast;
 namespace http = beast::http;
 using asio::ip::tcp;
 using Clock = std::chrono::steady_clock;
-using std::chrono::milliseconds;
 using std::chrono::seconds;
 
 /// pause between two readings of a record, so that pages show a tap within half a second
-constexpr milliseconds kLookEvery(100);
+constexpr std::chrono::milliseconds kLookEvery(100);
 constexpr double kLookFor = 0.05;     ///< seconds per reading of a record, during which requests wait
 constexpr double kFirstLook = 1.0;    ///< seconds of reading before a page is made; most runs need less
 constexpr seconds kAnswerWithin(25);  ///< longest wait of a request for news

@@ -14,8 +14,7 @@ struct DiscoveryOptions : Options {
                 Field("travel_cost_exponent",
                       "exponent of the expected path length. The score is divided by the path length to this exponent. "
                       "0 maximises the gain per tap, and 1 maximises the gain per metre")
-                    .at_least(0)
-                    .at_most(1));
+                    .within(0, 1));
   }
 };
 

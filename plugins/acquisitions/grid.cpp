@@ -17,8 +17,7 @@ struct GridOptions : Options {
         count,
         Field("count",
               "number of points per side of the first lattice. Each further lattice has twice as many points per side")
-            .at_least(1)
-            .at_most(1000)
+            .within(1, 1000)
             .from("4 x 4 covers an area within the 14 taps of the paper, nearly"));
   }
 };

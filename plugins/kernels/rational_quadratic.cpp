@@ -12,8 +12,7 @@ struct RationalQuadraticOptions : StationaryOptions {
     StationaryOptions::list(fields);
     fields.real(alpha,
                 Field("alpha", "shape parameter. Small values mix many length scales, and large values approach rbf")
-                    .at_least(1e-4)
-                    .at_most(1e4));
+                    .within(1e-4, 1e4));
   }
 };
 

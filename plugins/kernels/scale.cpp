@@ -10,7 +10,7 @@ struct ScaleOptions : Options {
   PluginChoice kernel{"kernel", {}, nullptr};
 
   void list(Fields& fields) override {
-    fields.real(factor, Field("factor", "factor by which covariances are multiplied").at_least(1e-12).at_most(1e12));
+    fields.real(factor, Field("factor", "factor by which covariances are multiplied").within(1e-12, 1e12));
     fields.plugin(kernel, Field("kernel", "kernel to multiply, written as {type: ..., ...}").needed());
   }
 };

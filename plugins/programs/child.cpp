@@ -12,7 +12,6 @@
 #include <cstdint>
 #include <filesystem>
 #include <iterator>
-#include <optional>
 #include <thread>
 #include <utility>
 

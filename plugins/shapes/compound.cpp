@@ -44,12 +44,11 @@ class Compound final : public Shape {
  public:
   using Options = CompoundOptions;
   Compound(const Options& options, const Context& context) {
-    for (const PartOptions& one : options.parts) {
+    for (const PartOptions& one : options.parts)
       parts_.push_back({context.create<const Shape>(one.shape),
                         {one.at[0], one.at[1], 0.0},
                         math::cos(one.rotation),
                         math::sin(one.rotation)});
-    }
     const Vector3d centre{(support({1, 0, 0}) - support({-1, 0, 0})) / 2,
                           (support({0, 1, 0}) - support({0, -1, 0})) / 2, 0.0};
     for (Part& part : parts_) part.at -= centre;
@@ -57,10 +56,9 @@ class Compound final : public Shape {
 
   double first_intersection(const Line& line) const override {
     double first = kInfinity;
-    for (const Part& part : parts_) {
+    for (const Part& part : parts_)
       first = std::min(
           first, part.shape->first_intersection({part.turned(line.origin - part.at), part.turned(line.direction)}));
-    }
     return first;
   }
 
@@ -76,9 +74,8 @@ class Compound final : public Shape {
 
   double support(const Vector3d& direction) const override {
     double most = -kInfinity;
-    for (const Part& part : parts_) {
+    for (const Part& part : parts_)
       most = std::max(most, direction.dot(part.at) + part.shape->support(part.turned(direction)));
-    }
     return most;
   }
 

@@ -48,17 +48,15 @@ std::string outline_error(const Outline& outline) {
   if (n > kMostPoints)
     return "has " + std::to_string(n) + " points, at most " + std::to_string(kMostPoints) + " are allowed";
   for (std::size_t i = 0; i < n; ++i) {
-    if (outline[i] == next(outline, i)) {
+    if (outline[i] == next(outline, i))
       return "points " + number(i) + " and " + number((i + 1) % n) + " are equal; the outline closes by itself";
-    }
     if (folds(outline, i)) return "folds back at point " + number((i + 1) % n);
   }
   for (std::size_t i = 0; i < n; ++i) {
     for (std::size_t j = i + 2; j < n; ++j) {
       if (i == 0 && j + 1 == n) continue;  // the first and the last edge are neighbours
-      if (intersect(outline[i], next(outline, i), outline[j], next(outline, j))) {
+      if (intersect(outline[i], next(outline, i), outline[j], next(outline, j)))
         return "edge " + number(i) + " meets edge " + number(j);
-      }
     }
   }
   return {};
@@ -68,9 +66,8 @@ std::string outline_error(const Outline& outline) {
 std::string hole_error(const Outline& outline, const Outline& hole) {
   for (std::size_t i = 0; i < hole.size(); ++i) {
     for (std::size_t j = 0; j < outline.size(); ++j) {
-      if (intersect(hole[i], next(hole, i), outline[j], next(outline, j))) {
+      if (intersect(hole[i], next(hole, i), outline[j], next(outline, j)))
         return "its edge " + number(i) + " meets edge " + number(j) + " of the outline";
-      }
     }
   }
   return contains(outline, hole.front()) ? "" : "lies outside the outline";

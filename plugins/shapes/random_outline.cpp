@@ -24,9 +24,8 @@ struct RandomOutlineOptions : Options {
                               "The wave of the top is not included")
                             .in(Unit::metre)
                             .at_least(0.02));
-    fields.real(roughness, Field("roughness", "roughness of the outline, from 0 (a bent ellipse) to 1 (deep lobes)")
-                               .at_least(0)
-                               .at_most(1));
+    fields.real(roughness,
+                Field("roughness", "roughness of the outline, from 0 (a bent ellipse) to 1 (deep lobes)").within(0, 1));
     fields.integer(
         number,
         Field("number", "index of the outline. The seed of the run and this index determine the outline").at_least(0));
@@ -45,9 +44,8 @@ double between(double low, double high, Random& random) { return low + (high - l
 /// Returns the left, right, lower and upper end of the bounding rectangle of an outline.
 std::array<double, 4> bounds(const Outline& outline) {
   std::array<double, 4> out{kInfinity, -kInfinity, kInfinity, -kInfinity};
-  for (const Point& p : outline) {
+  for (const Point& p : outline)
     out = {std::min(out[0], p[0]), std::max(out[1], p[0]), std::min(out[2], p[1]), std::max(out[3], p[1])};
-  }
   return out;
 }
 

@@ -6,7 +6,7 @@
 //     race_grid ORDERS RESULTS_CSV=METRIC ...
 // Exit code 1: a figure misses what the table of docs/tuning.md promises (metrics in metres).
 #include "support/populations.hpp"
-#include "tune/race.hpp"
+#include "support/race.hpp"
 
 #include <fmt/format.h>
 
@@ -21,37 +21,6 @@ constexpr double kMostJobs = 0.25;
 constexpr double kMostRegret = 0.03e-3;  ///< metres
 constexpr double kNear = 0.2e-3;         ///< metres
 constexpr double kLeastNear = 0.95;
-
-struct RaceOutcome {
-  std::size_t jobs = 0;
-  std::size_t winner = 0;
-};
-
-/// Races all settings with the seeds in this order.
-RaceOutcome race(const RaceTable& grid, const std::vector<std::size_t>& order) {
-  const RaceRules rules{false, 0.0};
-  RaceTable results(grid.size());
-  RaceState state;
-  state.budget = state.stage_end = grid.size() * order.size();
-  RaceOutcome out;
-  for (std::size_t i = 0; i < grid.size(); ++i) state.racing.push_back(i);
-  for (;;) {
-    for (const std::size_t setting : state.racing) {
-      for (; results[setting].size() < state.seeds; ++out.jobs)
-        results[setting].push_back(grid[setting][order[results[setting].size()]]);
-    }
-    const RaceDecision decision = decide(rules, state, results, nullptr, state.stage_end, out.jobs);
-    if (!decision.front.empty()) out.winner = decision.front.front();
-    // The recorded seeds are used up before the budget, because other settings have left jobs over.
-    if (!decision.end.empty()) return out;
-    if (decision.state.seeds > order.size()) {
-      RaceTable left;
-      for (const std::size_t setting : decision.state.racing) left.push_back(results[setting]);
-      return {out.jobs, decision.state.racing[ranked(left).front()]};
-    }
-    state = decision.state;
-  }
-}
 
 int run(int orders, const std::vector<std::string>& arguments) {
   int missed = 0;
@@ -73,7 +42,10 @@ int run(int orders, const std::vector<std::string>& arguments) {
         order[i] = i;
         std::swap(order[i], order[random.index(i + 1)]);
       }
-      const RaceOutcome outcome = race(grid, order);
+      const test::RaceEnd outcome = test::run_race(
+          {false, 0.0}, grid.size(), grid.size() * order.size(),
+          [&](std::size_t setting, std::size_t seed) { return grid[setting][order[seed]]; }, nullptr, nullptr,
+          order.size());  // the seeds are used up before the budget, because lost settings leave jobs over
       jobs += static_cast<double>(outcome.jobs) / static_cast<double>(grid.size() * order.size()) / orders;
       regret += (truth[outcome.winner] - best) / orders;
       near += truth[outcome.winner] - best <= kNear ? 1 : 0;

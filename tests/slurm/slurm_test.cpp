@@ -299,6 +299,48 @@ TEST_F(Slurm, ARaceGoesOnByItselfAndALostTaskDoesNotChangeItsDecisions) {
   EXPECT_EQ(text_of(first.directory / "best.yaml"), text_of(local / "best.yaml"));
 }
 
+TEST_F(Slurm, ARaceWhoseJobsDoNotEndStopsAndSaysHowToGoOn) {
+  const SlurmLab lab;
+  ASSERT_EQ(lab.palpate({"tune", paper(), "kernel.length_scale=2cm,3cm", "--metric", "rmse_m", "--jobs", "16",
+                         "--fresh", "0", "-j", "8"})
+                .status,
+            0);
+  const Sweep sweep = sweep_in(lab.folder());
+  const fs::path victim = job_at(sweep, 2);
+  const std::string directory = sweep.directory.string();
+  const std::string whole = text_of(sweep.directory / "manifest.jsonl");
+  std::ofstream(sweep.directory / "manifest.jsonl") << whole.substr(0, whole.find('\n', whole.find("{\"round\"")) + 1);
+  for (const char* const file : {"record.jsonl", "summary.json"}) fs::remove(victim / file);
+  {
+    const RunDirectory held(victim);  // Every task finds the job busy and leaves it unfinished.
+    ASSERT_EQ(lab.palpate(on_slurm({"resume", directory})).status, 0);
+    ASSERT_TRUE(lab.becomes_idle()) << "it was submitted again and again";
+  }
+  EXPECT_FALSE(fs::exists(sweep.directory / "slurm/2")) << "nothing was submitted again";
+  std::string logs;
+  for (const auto& file : fs::directory_iterator(sweep.directory / "slurm/1")) logs += text_of(file.path());
+  EXPECT_THAT(logs, HasSubstr("no job of the last submission has ended, so the race stops, read the logs in its folder "
+                              "slurm, then run: palpate resume " +
+                              directory + " --launcher slurm\n"));
+  ASSERT_EQ(lab.palpate(on_slurm({"resume", directory})).status, 0) << "the remedy of the message";
+  ASSERT_TRUE(lab.becomes_idle());
+  EXPECT_EQ(text_of(sweep.directory / "manifest.jsonl"), whole);
+}
+
+TEST_F(Slurm, ARaceIsStoppedByTheNameThatAllItsJobsHave) {
+  const SlurmLab lab;
+  const Ended submitted = lab.palpate(
+      on_slurm({"tune", paper(), kPace, "kernel.length_scale=2cm,3cm", "--metric", "rmse_m", "--jobs", "16"}));
+  ASSERT_EQ(submitted.status, 0) << submitted.err;
+  const fs::path directory = sweep_in(lab.folder()).directory;
+  const std::string name = "--name=object_i_" + directory.filename().string();
+  EXPECT_THAT(submitted.out, HasSubstr("\nstop: scancel " + name + "\n"));
+  ASSERT_EQ(lab.run({"scancel", name}).status, 0);
+  ASSERT_TRUE(lab.becomes_idle());
+  EXPECT_FALSE(fs::exists(directory / "slurm/2"));
+  EXPECT_EQ(sweep_in(lab.folder()).rounds.size(), 1U);
+}
+
 TEST_F(Slurm, WhatNoNodeCanRunNowIsSubmittedWithAWarning) {
   const SlurmLab lab;
   const Ended ended = lab.palpate(on_slurm({"sweep", paper(), "seed=range(0,2)", "--quiet"}, {"-j", "9"}));

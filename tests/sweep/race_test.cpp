@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The race of `palpate tune`: which settings it drops, and which one wins.
-#include "tune/race.hpp"
-
+#include "support/race.hpp"
 #include "support/testing.hpp"
 
 #include <palpate/random.hpp>
@@ -11,69 +10,25 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 
 namespace palpate {
 namespace {
 
+using test::RaceEnd;
+using test::run_race;
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 using ::testing::SizeIs;
-
-/// Approximately normal: the sum of twelve uniform numbers (Irwin and Hall), with variance 1.
-double normal(Random& random) {
-  double out = -6.0;
-  for (int i = 0; i < 12; ++i) out += random.uniform();
-  return out;
-}
 
 /// Settings with these means. Seeds shift all settings alike, and each run has noise of its own.
 RaceTable drawn(const std::vector<double>& means, std::size_t seeds, double noise, std::uint64_t number) {
   Random random(number, "race_test");
   RaceTable out(means.size());
   for (std::size_t seed = 0; seed < seeds; ++seed) {
-    const double shift = 100.0 * normal(random);
-    for (std::size_t i = 0; i < means.size(); ++i) out[i].push_back(means[i] + shift + noise * normal(random));
+    const double shift = 100.0 * random.normal();
+    for (std::size_t i = 0; i < means.size(); ++i) out[i].push_back(means[i] + shift + noise * random.normal());
   }
   return out;
-}
-
-struct RaceEnd {
-  std::size_t jobs = 0;
-  std::size_t winner = 0;
-  std::string reason;
-  std::vector<Loser> losers;
-  std::size_t settings = 0;
-};
-
-/// Runs a race. `value` returns the result of a setting on a seed; settings that join have the next numbers.
-RaceEnd run_race(const RaceRules& rules, std::size_t settings, std::size_t budget,
-                 const std::function<double(std::size_t setting, std::size_t seed)>& value,
-                 const std::function<void(const RaceDecision&)>& check = nullptr) {
-  RaceTable results(settings);
-  RaceState state;
-  state.budget = budget;
-  state.stage_end = first_stage_end(rules, budget);
-  for (std::size_t i = 0; i < settings; ++i) state.racing.push_back(i);
-  RaceEnd out;
-  for (;;) {
-    for (const std::size_t setting : state.racing) {
-      for (; results[setting].size() < state.seeds; ++out.jobs)
-        results[setting].push_back(value(setting, results[setting].size()));
-    }
-    RaceDecision decision = decide(rules, state, results, nullptr, budget, out.jobs);
-    if (check) check(decision);
-    out.losers.insert(out.losers.end(), decision.losers.begin(), decision.losers.end());
-    for (std::size_t i = 0; i < decision.new_settings; ++i) {
-      decision.state.racing.push_back(results.size());
-      results.emplace_back();
-    }
-    out.settings = results.size();
-    if (!decision.front.empty()) out.winner = decision.front.front();
-    out.reason = decision.end;
-    if (!decision.end.empty()) return out;
-    state = decision.state;
-  }
 }
 
 TEST(Losers, AreJudgedByTheTTestOfThePrintedTables) {
@@ -179,37 +134,20 @@ TEST(Race, OfTwoMetricsKeepsSettingsFromBothEndsOfTheFront) {
     position.push_back(20.0 * random.uniform());
     distance.push_back(10.0 * random.uniform());
   }
-  RaceTable results(40);
-  RaceTable costs(40);
-  RaceState state;
-  const RaceRules rules{true, 0.0};
-  state.budget = 500;
-  state.stage_end = first_stage_end(rules, 500);
-  for (std::size_t i = 0; i < 40; ++i) state.racing.push_back(i);
-  std::size_t jobs = 0;
-  RaceDecision decision;
-  while (decision.end.empty()) {
-    for (const std::size_t one : state.racing) {
-      for (; results[one].size() < state.seeds; ++jobs) {
-        const double value = noise[one][results[one].size()] + distance[one];
-        results[one].push_back(position[one] + value);
-        costs[one].push_back(value - position[one]);
-      }
-    }
-    decision = decide(rules, state, results, &costs, 500, jobs);
-    for (std::size_t i = 0; i < decision.new_settings; ++i) {
-      const std::size_t parent = decision.elites[random.index(decision.elites.size())];
-      decision.state.racing.push_back(results.size());
-      results.emplace_back();
-      costs.emplace_back();
-      position.push_back(position[parent] + random.uniform() - 0.5);
-      distance.push_back(std::abs(distance[parent] + 2.0 * (random.uniform() - 0.7)));
-    }
-    state = decision.state;
-  }
-  ASSERT_GE(decision.front.size(), 3U);
+  const auto above_front = [&](std::size_t one, std::size_t seed) { return noise[one][seed] + distance[one]; };
+  const RaceEnd end = run_race(
+      {true, 0.0}, 40, 500, [&](std::size_t one, std::size_t seed) { return position[one] + above_front(one, seed); },
+      [&](const RaceDecision& decision) {
+        for (std::size_t i = 0; i < decision.new_settings; ++i) {
+          const std::size_t parent = decision.elites[random.index(decision.elites.size())];
+          position.push_back(position[parent] + random.uniform() - 0.5);
+          distance.push_back(std::abs(distance[parent] + 2.0 * (random.uniform() - 0.7)));
+        }
+      },
+      [&](std::size_t one, std::size_t seed) { return above_front(one, seed) - position[one]; });
+  ASSERT_GE(end.front.size(), 3U);
   std::vector<double> kept;
-  for (const std::size_t one : decision.front) {
+  for (const std::size_t one : end.front) {
     kept.push_back(position[one]);
     EXPECT_LT(distance[one], 3.0);
   }

@@ -2,6 +2,9 @@
 // Tuning: its description, the space of its settings, and the jobs of its first round.
 #include "tune/tuner.hpp"
 
+#include "record/json.hpp"
+#include "tune/race_report.hpp"
+
 #include "config/quantity.hpp"
 #include "config/yaml.hpp"
 #include "support/runs.hpp"
@@ -135,6 +138,17 @@ TEST(SearchSpace, DistinguishesATypeWithOptionsFromItsName) {
   EXPECT_EQ(space.coordinate(0, value_text(space.value(0, 0.0))), 0.0);
 }
 
+TEST(SearchSpace, ComparesTheValuesOfAListAsQuantities) {
+  const TuneDescription description =
+      described("{keys: {kernel.length_scale: [3 cm, 17 mm, 0.2 m], taps: [5, 1e1]}, metric: rmse_m, jobs: 99}");
+  const SearchSpace space(description.keys, {false, false});
+  EXPECT_EQ(space.coordinate(0, "1.7 cm"), 1.0) << "as the config of the paper has it";
+  EXPECT_EQ(space.coordinate(0, "1.7 s"), std::nullopt);
+  EXPECT_EQ(space.coordinate(0, "18 mm"), std::nullopt);
+  EXPECT_EQ(space.coordinate(1, "10"), 1.0);
+  EXPECT_EQ(description.keys[0].position("200 mm"), 2.0) << "the page";
+}
+
 TEST(SearchSpace, DrawsNeighboursWithinTheRanges) {
   const TuneDescription description(nullptr,
                                     words({"kernel.length_scale=log_uniform(5mm,10cm)", "kernel=rbf,matern52"}));
@@ -257,6 +271,53 @@ TEST(ReadRace, RejectsARoundThatDoesNotFitItsSettings) {
   for (const std::int64_t seeds : {0, 1, 5, 1000})
     EXPECT_THAT(line("seeds", seeds), HasSubstr("a round has no valid 'seeds'")) << seeds;
   EXPECT_THAT(line("stage", std::int64_t{7}), HasSubstr("a round has no valid 'stage'"));
+}
+
+TEST(ReadRace, NamesTheStageThatDidNotTakeASetting) {
+  const TuneDescription description(nullptr, words({"kernel.length_scale=1cm,2cm,3cm"}));
+  Sweep sweep = planned(description).plan.sweep;
+  SweepRound next = sweep.rounds.front();
+  for (auto& [name, value] : next.decision.fields) {
+    if (name == "stage") value = std::int64_t{2};
+    if (name == "racing") value = JsonList{"[0, 3]"};
+    if (name == "dropped") value = JsonList{R"([{"setting": 1, "seeds": 4, "difference": 0.002, "p": 0.01}])"};
+  }
+  sweep.rounds.push_back(next);
+  next.decision.erase("stage");
+  next.decision.add("stage", std::int64_t{3});
+  sweep.rounds.push_back(next);
+  const RaceRecord race = read_race(sweep, description);
+  const RaceValues values{std::vector<std::optional<double>>(16, 0.01), {}};
+  const RaceResults results(sweep, description, race, values);
+  EXPECT_EQ(remark_about(results, 0), "config as it stands");
+  EXPECT_EQ(remark_about(results, 1), "lost after 4 seeds: 2.0 mm worse, p 0.01");
+  EXPECT_EQ(remark_about(results, 2), "not taken into stage 2");
+  EXPECT_EQ(remark_about(results, 3), "");
+  const std::vector<Row> rows = race_rows(results);
+  EXPECT_EQ(rows[2].number("lost_after_seeds"), 4.0);
+  EXPECT_EQ(rows[2].number("p"), std::nullopt);
+  EXPECT_EQ(rows[3].number("lost_after_seeds"), std::nullopt);
+}
+
+TEST(RaceResults, HaveNoGainBeforeTheRunsOnFreshSeedsHaveEnded) {
+  const TuneDescription description(nullptr, words({"kernel.length_scale=1cm,2cm,3cm"}));
+  Sweep sweep = planned(description).plan.sweep;
+  RaceRecord race = read_race(sweep, description);
+  RaceValues values;
+  read_results(sweep, description, values);
+  EXPECT_EQ(values.unfinished, 16U);
+  race.end = "one setting is left";
+  race.front = {1};
+  race.settings[0].fresh = {0, 1, 2, 3};
+  race.settings[1].fresh = {4, 5, 6, 7};
+  const RaceResults during(sweep, description, race, values);
+  EXPECT_EQ(fresh_words(during), "the runs on fresh seeds have not ended");
+  EXPECT_EQ(during.gain.count, 0U);
+  EXPECT_TRUE(during.is_best(1));
+  for (std::size_t job = 0; job < 16; ++job) values.metric[job] = job < 4 ? 0.012 : 0.01;
+  values.unfinished = 0;
+  const RaceResults after(sweep, description, race, values);
+  EXPECT_THAT(fresh_words(after), StartsWith("gain over the config as it stands, on 4 seeds"));
 }
 
 TEST(FirstRound, CanBePlannedAgainFromTheConfigThatItWrites) {

@@ -10,6 +10,7 @@
 
 #include <csignal>
 #include <random>
+#include <regex>
 
 namespace palpate {
 namespace {
@@ -45,6 +46,10 @@ TEST_F(Tune, FindsASettingThatIsBetterThanTheConfigAndWritesItAsAConfigThatRuns)
   EXPECT_LE(sweep.rounds[sweep.rounds.size() - 2].jobs, 100U);
   EXPECT_EQ(sweep.rounds.back().jobs, sweep.rounds[sweep.rounds.size() - 2].jobs + 80) << "both settings on 40 seeds";
   EXPECT_EQ(lines(text_of(race_of / "results.csv")), static_cast<int>(sweep.jobs.size()) + 1);
+  int last = 0;
+  for (const test::Cells& row : test::csv_rows(text_of(race_of / "race.csv")))
+    last += row.at("lost_after_seeds").empty();
+  EXPECT_LE(last, 5) << "settings in the last stage";
   EXPECT_THAT(text_of(race_of / "best.yaml"),
               AllOf(StartsWith("# Best of "), HasSubstr("\nname: \"object_i_best\"\n")));
   EXPECT_EQ(palpate({"run", (race_of / "best.yaml").string(), "--quiet", "--runs", "again"}).status, 0);
@@ -102,6 +107,25 @@ TEST_F(Tune, TwoProcessesAtOnceMakeTheDecisionsOfOne) {
   EXPECT_EQ(first->wait().status, 0);
   EXPECT_EQ(second->wait().status, 0);
   EXPECT_EQ(text_of(directory("both") / "manifest.jsonl"), text_of(directory("alone") / "manifest.jsonl"));
+}
+
+TEST_F(Tune, RestoresTheConfigsOfJobsThatWereDeleted) {
+  ASSERT_EQ(palpate(race()).status, 0);
+  const std::string before = text_of(directory() / "manifest.jsonl");
+  const Sweep sweep = read_sweep(directory());
+  const fs::path in_race = job_directory(sweep, sweep.jobs[9]);
+  const fs::path fresh = job_directory(sweep, sweep.jobs.back());
+  const auto configs = [&] {  // without the places of the values, which are now in the config of the race
+    return std::regex_replace(text_of(in_race / "config.yaml") + text_of(fresh / "config.yaml"), std::regex(" +#.*"),
+                              "");
+  };
+  const std::string written = configs();
+  fs::remove_all(in_race);
+  fs::remove(fresh / "config.yaml");
+  const test::Ended ended = resume(directory());
+  EXPECT_EQ(ended.status, 0) << ended.err;
+  EXPECT_EQ(configs(), written);
+  EXPECT_EQ(text_of(directory() / "manifest.jsonl"), before);
 }
 
 TEST_F(Tune, RejectsInOneLineWhatCannotBeRacedAndBeginsNothing) {

@@ -25,11 +25,10 @@ inline Candidates grid_from_above(const Area& area, double desk, const RunSettin
   const auto cells = [&](double side) {
     const double count =
         run.spacing ? std::round(side / *run.spacing) : static_cast<double>(run.candidates.value_or(usual_count));
-    if (count > kMaxCellsPerSide) {
+    if (count > kMaxCellsPerSide)
       throw Error(run.spacing ? "candidates.spacing" : "candidates.count",
                   "cuts the area into more than " + std::to_string(kMaxCellsPerSide) + " cells along a side",
                   "use larger cells");
-    }
     return std::max(1, static_cast<int>(count));
   };
   Candidates out;

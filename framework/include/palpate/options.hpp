@@ -88,10 +88,11 @@ class Field {
 
   /// Sets the dimension; default `none`.
   Field& in(Unit dimension) { return unit = dimension, *this; }
-  /// Set the range: above `bound`, at least `bound`, or at most `bound`.
+  /// Set the range: above `bound`, at least `bound`, at most `bound`, or from `low` to `high`.
   Field& above(double bound) { return least = bound, open_below = true, *this; }
   Field& at_least(double bound) { return least = bound, open_below = false, *this; }
   Field& at_most(double bound) { return most = bound, *this; }
+  Field& within(double low, double high) { return at_least(low).at_most(high); }
   /// Sets the source of the default: a paper, a data sheet, a measurement.
   Field& from(const char* text) { return source = text, *this; }
   /// Removes the default: a config must set the field.

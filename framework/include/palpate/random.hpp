@@ -3,6 +3,9 @@
 // that draw random numbers do not affect each other, and a resumed run draws the same numbers as an uninterrupted run.
 #pragma once
 
+#include <palpate/math.hpp>
+
+#include <cmath>
 #include <cstdint>
 #include <random>
 #include <string_view>
@@ -26,6 +29,12 @@ class Random {
 
   /// Returns a uniform number in [0, 1), a multiple of 2^-53.
   double uniform() { return static_cast<double>(bits() >> 11) * 0x1.0p-53; }
+
+  /// Returns a standard normal number (Box and Muller 1958).
+  double normal() {
+    const double radius = std::sqrt(-2.0 * math::log(1.0 - uniform()));
+    return radius * math::cos(2.0 * 3.14159265358979323846 * uniform());
+  }
 
   /// Returns a uniform integer in {0, ..., count - 1}; `count` > 0. Unbiased, because excess draws are rejected.
   std::uint64_t index(std::uint64_t count) {

@@ -87,7 +87,7 @@ def sweep(config, *axes, runs="runs", workers=None, progress=None, **settings) -
     command = [_palpate.program, "resume", directory]
     if workers is not None:
         command += ["-j", str(workers)]
-    status, said = _program.conduct(command, progress)
+    status, said, _ = _program.conduct(command, progress)
     made = Sweep(directory)
     # Status 1 means that a job, an expectation of the config, or the sweep itself failed.
     if status not in (0, 1) or status == 1 and None in made.table["status"].tolist():
@@ -108,12 +108,12 @@ def tune(config, keys, *, metric, cost=None, jobs=None, time=None, within=None, 
     options = {"--metric": metric, "--cost": cost, "--jobs": jobs, "--time": time, "--within": within, "--fresh": fresh, "--where": where,
                "--over": over if over is None or isinstance(over, str) else ",".join(over), "--runs": _os.fspath(runs), "-j": workers}
     words += [text for name, value in options.items() if value is not None for text in (name, str(value))]
-    status, said = _program.conduct([_palpate.program, "tune", _os.fspath(config), *words], progress)
+    status, said, directory = _program.conduct([_palpate.program, "tune", _os.fspath(config), *words], progress)
     if status == 2:
         raise _error("tune", said, "")
     if status != 0:
         raise _error("tune", f"the race ended with status {status}: {said}", "repeat the call to resume it", Error)
-    return Race(_program.race_directory(said))
+    return Race(directory)
 
 
 def begin_sweep(config, *axes, labels=None, runs="runs", **settings) -> Sweep:

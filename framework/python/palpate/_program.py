@@ -9,6 +9,7 @@ import re
 import signal
 import subprocess
 import sys
+import tempfile
 
 import numpy as np
 
@@ -49,10 +50,11 @@ def override_texts(overrides, settings):
 
 
 def conduct(command, progress):
-    """Runs a sweep or a race and returns its exit status and its last line on stderr. It ends with this process. Calls
-    progress(done, jobs)."""
+    """Runs a sweep or a race. Returns its exit status, its last line on stderr, and the directory in its last line
+    "record: DIR" on stdout, or None. It ends with this process. Calls progress(done, jobs)."""
+    printed = tempfile.TemporaryFile()
     # The child process has a separate session. Otherwise, Ctrl-C in a terminal would reach it twice.
-    child = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE,
+    child = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=printed, stderr=subprocess.PIPE,
                              start_new_session=True, env={**os.environ, "PALPATE_PARENT": str(os.getpid())})
     said, told, interrupted = b"", None, None
     try:
@@ -78,16 +80,14 @@ def conduct(command, progress):
     finally:
         child.stderr.close()
         child.wait()
+        printed.seek(0)
+        records = re.findall(rb"^record: (.*)$", printed.read(), re.MULTILINE)
+        printed.close()
     if interrupted is not None:
         raise interrupted
     lines = [line for line in said.decode(errors="replace").splitlines()
              if line.strip() and not re.match(r"\s*\d+ of \d+ (jobs done|runs, )", line)]
-    return child.returncode, lines[-1] if lines else ""
-
-
-def race_directory(said):
-    """Returns the directory in the line that the program prints at the start of a race."""
-    return re.sub(r" exists: the race goes on$", "", re.sub(r"^\d+ settings on \d+ seeds in ", "", said))
+    return child.returncode, lines[-1] if lines else "", os.fsdecode(records[-1]) if records else None
 
 
 def curve_columns(file, keys):

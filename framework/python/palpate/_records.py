@@ -252,7 +252,7 @@ class Sweep:
             command += ["--by", ",".join(keys)] if keys else []
             command += ["--where", where] if where is not None else []
             command += ["-j", str(operator.index(workers))] if workers is not None else []
-            status, said = _program.conduct(command, progress)
+            status, said, _ = _program.conduct(command, progress)
             if status != 0:
                 raise make_error("curves", said.removeprefix("command line: "), "", InputError if status == 2 else Error)
             return _table((name, _numbers(values) if isinstance(values, list) else values)

@@ -234,9 +234,8 @@ void FigureLayout::map(const Box& box, const SceneFrame& frame, const std::strin
                        const ColourScale& colours) {
   const Area& area = frame.area;
   std::string settings = axis('x', area.width) + axis('y', area.depth) + colour_range(colours) + fill_template("map");
-  if (const std::string next = "next_" + taps; has(next)) {
+  if (const std::string next = "next_" + taps; has(next))
     settings += fill_template("next_tap", next) + star_at(100.0 * 0.042 * std::max(area.width, area.depth));
-  }
   plot(box, settings,
        fmt::format("plot ${} matrix using {} with image", map, matrix_columns(frame)) + marks(taps, "1:2"));
 }

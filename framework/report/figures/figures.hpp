@@ -4,7 +4,6 @@
 #pragma once
 
 #include "analysis/group_curves.hpp"
-#include "record/run_replay.hpp"
 #include "report/history.hpp"
 #include "sweep/sweep.hpp"
 

@@ -263,12 +263,11 @@ Figures write_paper_figures(const RunEnvironment& environment, const Sweep& swee
   out.add_progress("figure_2", "Object I", "object_i", {1, 8, 10, 14});
   out.add_progress("figure_3", "Object II", "object_ii", {1, 6, 12, 17});
   out.add_comparisons();
-  if (out.figures.empty()) {
+  if (out.figures.empty())
     throw Error(sweep.directory.string(),
                 "has no finished job with scene=object_i, object_ii or object_i_right and the strategy of one of the "
                 "paper's figures",
                 kAllOfThem);
-  }
   return {write_figures(folder, out.figures), out.notes};
 }
 

@@ -2,13 +2,10 @@
 #include "analysis/gnuplot.hpp"
 #include "analysis/mean_output.hpp"
 #include "config/text_layout.hpp"
-#include "record/fields.hpp"
 #include "report/curves.hpp"
 #include "report/figures/figure_layout.hpp"
 #include "report/figures/figures.hpp"
 #include "report/words/titles.hpp"
-
-#include <palpate/error.hpp>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

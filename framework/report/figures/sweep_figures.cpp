@@ -3,7 +3,6 @@
 #include "analysis/gnuplot.hpp"
 #include "analysis/groups.hpp"
 #include "analysis/mean_output.hpp"
-#include "analysis/statistics.hpp"
 #include "config/text_layout.hpp"
 #include "report/figures/figure_layout.hpp"
 #include "report/figures/figures.hpp"

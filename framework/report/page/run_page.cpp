@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "report/page/run_page.hpp"
 
-#include "config/quantity.hpp"
 #include "config/yaml.hpp"
 #include "record/build_info.hpp"
 #include "record/fields.hpp"
@@ -10,7 +9,6 @@
 #include "record/run_directory.hpp"
 #include "report/colours.hpp"
 #include "report/curves.hpp"
-#include "report/page/json.hpp"
 #include "report/page/page.hpp"
 #include "report/page/warnings.hpp"
 #include "report/words/titles.hpp"
@@ -108,14 +106,13 @@ static void to_json(Json& out, const RunAtTap& moment) {
                    {"source", source_name(moment.next->request.source)},
                    {"score", moment.next->score},
                    {"ties", moment.next->ties}};
-    if (const TapLine& line = moment.next->request.line; !line.from_above) {
+    if (const TapLine& line = moment.next->request.line; !line.from_above)
       out["next"].update({{"z", line.start.z()},
                           {"direction.x", line.direction.x()},
                           {"direction.y", line.direction.y()},
                           {"direction.z", line.direction.z()},
                           {"along", moment.next_along},
                           {"length", line.length}});
-    }
   }
 }
 

@@ -2,7 +2,6 @@
 #include "report/page/sweep_curves.hpp"
 
 #include "analysis/group_curves_report.hpp"
-#include "record/fields.hpp"
 #include "report/colours.hpp"
 #include "report/page/sweep_page.hpp"
 

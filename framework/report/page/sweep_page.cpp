@@ -153,10 +153,9 @@ Estimates estimate_settings(const std::vector<PageSetting>& settings, const std:
 /// Returns the mean of each setting, half the width of its 95 % interval, and the numbers of values and of clusters.
 Json json_of_estimates(const Estimates& estimates) {
   Json out = Json::array();
-  for (const auto& [count, clusters, mean, ends] : estimates) {
+  for (const auto& [count, clusters, mean, ends] : estimates)
     out.push_back(
         {count > 0 ? Json(mean) : Json(), ends ? Json((ends->high - ends->low) / 2.0) : Json(), count, clusters});
-  }
   return out;
 }
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "report/page/sweep_race.hpp"
 
-#include "config/quantity.hpp"
 #include "record/recorded_run.hpp"
 #include "tune/race_report.hpp"
 
@@ -10,22 +9,6 @@
 #include <algorithm>
 
 namespace palpate {
-namespace {
-
-/// Returns the position of a value on the axis of its key: the index in a list, or the number in the unit of the range.
-/// Returns null for an option that the setting lacks.
-Json position(const TunedKey& key, const std::string& text) {
-  if (!key.range) {
-    const auto same = [&](const Tree& one) { return value_text(one) == text; };
-    const auto found = std::find_if(key.values.begin(), key.values.end(), same);
-    return found != key.values.end() ? Json(found - key.values.begin()) : Json();
-  }
-  const auto value = any_quantity(text);
-  const auto unit = any_quantity("1 " + key.range->unit);
-  return value && unit ? Json(value->value / unit->value) : Json();
-}
-
-}  // namespace
 
 Json json_of_race(const Sweep& sweep) {
   if (sweep.rounds.empty()) return {};
@@ -34,7 +17,7 @@ Json json_of_race(const Sweep& sweep) {
   const RaceRecord race = read_race(sweep, description);
   RaceValues values;
   read_results(sweep, description, values);
-  const RaceOfPage words = race_of_page({sweep, description, race, values});
+  const RaceResults results(sweep, description, race, values);
   Json keys = Json::array();
   for (const TunedKey& one : description.keys) {
     keys.push_back({{"name", one.key}, {"unit", ""}, {"logarithmic", false}});
@@ -46,18 +29,22 @@ Json json_of_race(const Sweep& sweep) {
     for (const Tree& value : one.values) keys.back()["texts"].push_back(value_text(value));
   }
   Json settings = Json::array();
+  const std::vector<std::size_t>& racing = race.state.racing;
   for (std::size_t i = 0; i < race.settings.size(); ++i) {
-    const RaceOfPage::Setting& one = words.settings[i];
     settings.push_back({{"jobs", race.settings[i].jobs},
-                        {"words", one.words},
-                        {"remark", one.remark},
-                        {"lost", one.lost},
-                        {"best", one.best},
+                        {"words", settings_words(results, i)},
+                        {"remark", remark_about(results, i)},
+                        {"lost", !std::binary_search(racing.begin(), racing.end(), i)},
+                        {"best", results.is_best(i)},
                         {"at", Json::array()}});
-    for (std::size_t key = 0; key < description.keys.size(); ++key)
-      settings.back()["at"].push_back(position(description.keys[key], race.settings[i].values[key]));
+    for (std::size_t key = 0; key < description.keys.size(); ++key) {
+      const auto position = description.keys[key].position(race.settings[i].values[key]);
+      settings.back()["at"].push_back(position ? Json(*position) : Json());
+    }
   }
-  return {{"metric", description.metric}, {"keys", keys}, {"settings", settings}, {"end", words.end}};
+  const std::string end =
+      race.has_ended() ? fmt::format("The race ended because {}; {}.", race.end, fresh_words(results)) : "";
+  return {{"metric", description.metric}, {"keys", keys}, {"settings", settings}, {"end", end}};
 }
 
 }  // namespace palpate

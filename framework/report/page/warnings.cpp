@@ -62,27 +62,24 @@ void warn_of_end(const RecordedRun& recording, const RunResult& last, std::vecto
 void warn_of_choices(const RecordedRun& recording, const History& history, std::vector<std::string>& out) {
   const bool any_side = recording.is_any_side();
   const RunResult& last = history.moments.back().result;
-  if (const int fallbacks = diagnostics(last, "fallback"); fallbacks > 0) {
+  if (const int fallbacks = diagnostics(last, "fallback"); fallbacks > 0)
     out.push_back(
         fmt::format("{} of {} {} chosen by the fallback, the largest uncertainty, because the acquisition's scores did "
                     "not distinguish the candidates (as before the first hit).",
                     fallbacks, counted(last.taps, "tap"), fallbacks == 1 ? "was" : "were"));
-  }
   const auto without_reason = [](const Row& row) {
     return row.text("source") == source_name(Source::acquisition) && row.number("score").value_or(1.0) <= 0.0;
   };
-  if (const auto stalled = std::count_if(recording.rows.begin(), recording.rows.end(), without_reason); stalled > 0) {
+  if (const auto stalled = std::count_if(recording.rows.begin(), recording.rows.end(), without_reason); stalled > 0)
     out.push_back(
         fmt::format("{} chosen by the acquisition although no {} had a positive score: then the first one is taken.{}",
                     counted(stalled, "tap") + (stalled == 1 ? " was" : " were"), any_side ? "approach" : "candidate",
                     any_side ? "" : " Choose choice.fallback=uncertainty to search for the object instead."));
-  }
-  if (const int drift = first_drift(recording, history); drift > 0) {
+  if (const int drift = first_drift(recording, history); drift > 0)
     out.push_back(
         fmt::format("From the same earlier taps, this build would choose another position for tap {}: the run used "
                     "another build or instruction set. The {} show the recorded taps.",
                     drift, any_side ? "surfaces" : "maps"));
-  }
 }
 
 void warn_of_weights(const RecordedRun& recording, const History& history, std::vector<std::string>& out) {
@@ -105,12 +102,11 @@ void warn_of_weights(const RecordedRun& recording, const History& history, std::
 }
 
 void warn_of_numbers(const RunResult& last, std::vector<std::string>& out) {
-  if (const int raised = diagnostics(last, "jitter"); raised > 0) {
+  if (const int raised = diagnostics(last, "jitter"); raised > 0)
     out.push_back(
         fmt::format("Jitter up to {:.1e} was added to the covariance, {}: the taps made it singular in "
                     "double precision. It acts as noise of each tap.",
                     last.state.jitter_max, raised == 1 ? "once" : fmt::format("in {} steps", raised)));
-  }
   add_counted(out, diagnostics(last, "pivoted"), "factorisation", " needed pivoting as the last resort.");
   if (const int aside = diagnostics(last, "redundant_taps"); aside > 0)
     out.push_back(fmt::format("{} left out: to machine precision the other taps determine {}.",

@@ -94,12 +94,11 @@ class FromAboveExplanation final : public Explanation {
     }
     explain_place(text_, row_, belief_option(options_, "footprint.type"));
     explain_repeats();
-    if (const std::optional<double> seconds = row_.number("expected_seconds")) {
+    if (const std::optional<double> seconds = row_.number("expected_seconds"))
       text_.add(
           fmt::format("It was made by motion {} of motion.of, which was expected to give the most information per "
                       "second here, in {}.",
                       tap_.request.motion, seconds_words(*seconds)));
-    }
   }
 
   void explain_design() {
@@ -284,10 +283,9 @@ class FromAboveExplanation final : public Explanation {
 
 std::string explain_tap(const RunEnvironment& environment, const RecordedRun& recording, int tap) {
   const auto taps = static_cast<int>(recording.rows.size());
-  if (tap < 1 || tap > taps) {
+  if (tap < 1 || tap > taps)
     throw Error(fmt::format("tap {}", tap), fmt::format("the run has {}", counted(taps, "tap")),
                 taps == 1 ? "choose tap 1" : fmt::format("choose one of 1 to {}", taps));
-  }
   if (recording.is_any_side()) return explain_approach(environment, recording, tap);
   return FromAboveExplanation(environment, recording, tap).text();
 }

@@ -55,12 +55,11 @@ std::string kernel_words(const DescribedGp& subject) {
 
 std::string fit_words(const DescribedGp& subject) {
   const std::optional<bool> changed = subject.row.flag(subject.prefix + "fit.changed");
-  if (!changed) {
+  if (!changed)
     return subject.fitting.type == "fixed"
                ? "Its hyperparameters are those of the config (fitting: fixed)."
                : fmt::format("No fit ({}) was due after its latest tap: it keeps the hyperparameters that it had.",
                              subject.fitting.type);
-  }
   std::string out = fmt::format("Its latest tap was followed by a fit ({}), which {}", subject.fitting.type,
                                 *changed ? "changed the hyperparameters" : "left the hyperparameters as they were");
   if (const std::string value = subject.words("fit.objective"); !value.empty()) out += "; objective " + value;

@@ -38,36 +38,29 @@ void complete_contact(const TapLine& line, TapResult& answer) {
 }
 
 std::optional<AnswerFault> find_fault(const TapResult& answer, const TapLine& line, const HeightBounds& bounds) {
-  if (answer.distance && !is_within(*answer.distance, 0.0, line.length)) {
+  if (answer.distance && !is_within(*answer.distance, 0.0, line.length))
     return AnswerFault{fmt::format("distance {:.6g} m is outside 0 to {:.4g} m (the length of the line)",
                                    *answer.distance, line.length),
                        "give metres from the start of the line (are these millimetres?)"};
-  }
-  if (answer.is_contact() && (!answer.contact || !(line.from_above || answer.distance))) {
+  if (answer.is_contact() && (!answer.contact || !(line.from_above || answer.distance)))
     return AnswerFault{"the contact has no position",
                        line.from_above ? "give its height" : "give the distance along the line"};
-  }
-  if (!line.from_above && answer.contact && !(answer.contact->array().abs() <= kAnyArm.highest).all()) {
+  if (!line.from_above && answer.contact && !(answer.contact->array().abs() <= kAnyArm.highest).all())
     return AnswerFault{"the position of the contact is more than 10 m away (no arm is that long)",
                        "give metres in the scene's frame (are these millimetres?)"};
-  }
-  if (line.from_above && answer.is_contact() && !is_within(answer.height(), bounds.lowest, bounds.highest)) {
+  if (line.from_above && answer.is_contact() && !is_within(answer.height(), bounds.lowest, bounds.highest))
     return AnswerFault{fmt::format("height {:.6g} m is outside {:.4g} to {:.4g} m ({})", answer.height(), bounds.lowest,
                                    bounds.highest, bounds.meaning),
                        "give metres in the scene's frame (are these millimetres?)"};
-  }
-  if (!is_within(answer.force, 0.0, kMostForce)) {
+  if (!is_within(answer.force, 0.0, kMostForce))
     return AnswerFault{fmt::format("force {:.6g} N is outside 0 to {:g} N", answer.force, kMostForce),
                        "give the size of the push in newtons (are these millinewtons?)"};
-  }
-  if (answer.peak_force && !is_within(*answer.peak_force, 0.0, kMostForce)) {
+  if (answer.peak_force && !is_within(*answer.peak_force, 0.0, kMostForce))
     return AnswerFault{fmt::format("peak force {:.6g} N is outside 0 to {:g} N", *answer.peak_force, kMostForce),
                        "give the largest push in newtons (are these millinewtons?)"};
-  }
-  if (!is_within(answer.seconds, 0.0, kMostSeconds)) {
+  if (!is_within(answer.seconds, 0.0, kMostSeconds))
     return AnswerFault{fmt::format("seconds {:.6g} is outside 0 to {:.0f}", answer.seconds, kMostSeconds),
                        "give the time of the tap in seconds (are these milliseconds?)"};
-  }
   return std::nullopt;
 }
 

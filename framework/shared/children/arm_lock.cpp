@@ -85,10 +85,9 @@ ArmLock::ArmLock(const std::string& where, const std::string& arm) {
     socket_ = std::move(socket);
     return;
   }
-  if (errno != EADDRINUSE) {
+  if (errno != EADDRINUSE)
     throw Error(where, "the arm " + arm + " cannot be locked: " + std::strerror(errno),
                 "allow palpate to create unix sockets (unix(7))", Error::Kind::run);
-  }
   throw Error(where, "the arm " + arm + " is used by " + holder_of(name),
               "wait until that process has ended, or end it", Error::Kind::busy);
 }

@@ -8,7 +8,6 @@
 #include <cstdint>
 #include <optional>
 #include <sstream>
-#include <string_view>
 #include <utility>
 
 namespace palpate {

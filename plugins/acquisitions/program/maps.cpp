@@ -127,10 +127,9 @@ std::size_t header_length(const std::string& start) {
 
 void check_header(const std::string& text, Eigen::Index count) {
   const NpyHeader header = read_npy_header(text);
-  if (header.type != "<f8") {
+  if (header.type != "<f8")
     throw std::runtime_error(
         fmt::format("numbers of the type {}, not '<f8', which is float64", programs::shown(header.type)));
-  }
   if (header.shape != fmt::format("({},)", count))
     throw std::runtime_error(fmt::format("an array of the shape {}, not ({},)", programs::shown(header.shape), count));
 }

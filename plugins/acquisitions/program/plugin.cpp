@@ -135,11 +135,10 @@ struct ProgramOptions : Options {
                    unsaid(words.value_or(std::vector<std::string>()), content.program, declared));
     // An unknown name is usually written in the program, so the error then refers to the program.
     const bool by_program = declared.size() == 1 && reads == *declared.begin();
-    for (const std::string& name : names_in(reads)) {
+    for (const std::string& name : names_in(reads))
       fields.require(program::find_map(name) != nullptr, by_program ? "command" : "reads",
                      (by_program ? "reads=[...] in " + shown(content.file) + " has " : "has ") + shown(name) +
                          ", which is not one of " + all_names());
-    }
     fields.real(deadline, Field("deadline",
                                 "time limit of the program's answer. After this time the run fails. 'palpate resume "
                                 "--retry-failed' continues the run")
@@ -149,8 +148,7 @@ struct ProgramOptions : Options {
                               .not_identifying());
     fields.real(start, Field("start", "time added to the deadline of the program's first scores")
                            .in(Unit::second)
-                           .at_least(0)
-                           .at_most(86400)
+                           .within(0, 86400)
                            .from("an estimate: large libraries take seconds to load")
                            .not_identifying());
   }

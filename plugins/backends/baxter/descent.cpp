@@ -13,7 +13,6 @@
 namespace palpate::baxter {
 namespace {
 
-using tapping::newtons;
 using AllowedAction = Fault::AllowedAction;
 
 /// A pull is a fault after kPullTime seconds of consecutive new readings. These are at least kFewestPullReadings and at
@@ -181,7 +180,8 @@ tapping::HeightResult Tapper::descend(const TapRequest& request, const tapping::
       "tap {}: {:.1f} mm/s on springs of {:.1f} kN/m; a contact is detected after {:.0f} ms and stopped {:.0f} ms "
       "later, messages are up to {:.0f} ms late; at most {} are expected",
       request.number, 1e3 * motion.speed, 1e-3 * stiffness, 1e3 * reaction_.noticing(), 1e3 * reaction_.stopping(),
-      1e3 * reaction_.lateness(), newtons(reaction_.expected_force(motion.threshold, motion.speed, stiffness))));
+      1e3 * reaction_.lateness(),
+      tapping::newtons(reaction_.expected_force(motion.threshold, motion.speed, stiffness))));
   last_moving_ = {std::abs(moving_), motion.speed};
   const tapping::Descent plan = tapping::plan_descent(motion, scene_.desk(), request.predicted);
   DescentState way{column, motion, stiffness, plan, SignedTap(motion, plan, sign_), seen_.endpoint->force, {}};
@@ -297,11 +297,10 @@ tapping::HeightResult Tapper::accept(const DescentState& way, const tapping::Hei
   rest_from_above(way.column);
   const Eigen::Vector3d moved = force_at_rest(way.at(way.plan.hover)) - way.at_hover;
   const double most = std::max(kLeastZeroChange, 0.5 * way.motion.threshold);
-  if (!(std::abs(moved.z()) < most && moved.head<2>().norm() < options_.force_stop)) {
+  if (!(std::abs(moved.z()) < most && moved.head<2>().norm() < options_.force_stop))
     return failed(Outcome::aborted,
                   "the force did not return to its zero after the tool was clear: its zero moved during the tap, and "
                   "the contact may be false");
-  }
   if (way.moving) learn_moving(*way.moving);
   // Other motions do not measure the height of the onset.
   const bool at_onset = way.motion.type == tapping::MotionOptions::Type::continuous;

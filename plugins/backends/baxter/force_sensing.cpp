@@ -12,7 +12,6 @@
 namespace palpate::baxter {
 namespace {
 
-using tapping::newtons;
 using AllowedAction = Fault::AllowedAction;
 
 constexpr std::size_t kForceSamples = 25;        ///< number of new readings for the force at rest
@@ -216,7 +215,8 @@ void Tapper::learn_moving(double difference) {
   moving_ = much ? 0.0 : difference;
   if (logged_ >= kLoggedTaps) return;
   ++logged_;
-  note_("during the descent in air the force along z differs by " + newtons(difference) + " from its value at rest" +
+  note_("during the descent in air the force along z differs by " + tapping::newtons(difference) +
+        " from its value at rest" +
         (much ? ", too much for a zero: calibrate the robot (rosrun baxter_tools tare.py) or lower motion.speed"
               : ": this is its zero during descents from the next tap on"));
 }
@@ -232,9 +232,8 @@ Eigen::Vector3d Tapper::force_at_rest(const Joints& joints) {
     step(joints);
     if (guard_.fresh()) readings.push_back(seen_.endpoint->force);
   }
-  if (!enough()) {
+  if (!enough())
     throw Fault{"endpoint_state is published too rarely to measure the force at rest", Fault::AllowedAction::hold};
-  }
   return median(std::move(readings));
 }
 

@@ -3,7 +3,6 @@
 
 #include "baxter/error_texts.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -63,9 +62,8 @@ constexpr const char* kOwnSlowness =
 std::optional<Fault> stale_fault(const char* stream, double age, double most, double gap,
                                  AllowedAction then = AllowedAction::silence) {
   if (age <= most) return std::nullopt;
-  if (gap > most && age <= gap + most) {
+  if (gap > most && age <= gap + most)
     return Fault{fmt::format("this computer could not serve the arm for {:.2f} s{}", gap, kOwnSlowness), then};
-  }
   return Fault{fmt::format("{} did not arrive for {:.2f} s: check the network and the robot's processes", stream, age),
                then};
 }
@@ -116,9 +114,8 @@ std::string Workspace::breach(const Eigen::Vector3d& tip) const {
   const Eigen::Vector3d at = 100 * tip;
   const std::string where =
       fmt::format("the tip is at ({:.1f}, {:.1f}, {:.1f}) cm of the scene, ", at.x(), at.y(), at.z());
-  if (beyond(tip.x(), -kSideways, width + kSideways) || beyond(tip.y(), -kSideways, depth + kSideways)) {
+  if (beyond(tip.x(), -kSideways, width + kSideways) || beyond(tip.y(), -kSideways, depth + kSideways))
     return fmt::format("{}more than {:.0f} cm outside the area", where, 100 * kSideways);
-  }
   if (!(tip.z() >= floor)) return fmt::format("{}below the floor of {:.1f} cm", where, 100 * floor);
   if (!(tip.z() <= ceiling)) return fmt::format("{}above the ceiling of {:.1f} cm", where, 100 * ceiling);
   return {};
@@ -180,9 +177,8 @@ std::optional<Fault> MotionGuard::rate_fault(const Snapshot& seen) const {
   const auto in_window = [](int times, int needed = ReadingCounter::kFewest) {
     return fmt::format("{} times in the last {:.1f} s, {} are needed", times, ReadingCounter::kWindow, needed);
   };
-  if (looks < ReadingCounter::kFewest && !seen.simulated) {
+  if (looks < ReadingCounter::kFewest && !seen.simulated)
     return Fault{fmt::format("this computer served the arm {}{}", in_window(looks), kOwnSlowness), AllowedAction::hold};
-  }
   const int fewest = seen.simulated ? std::min(ReadingCounter::kFewest, looks / 2) : ReadingCounter::kFewest;
   for (const auto& [name, stream] : {std::pair{kJoints, &joint_stream_}, std::pair{kEndpoint, &endpoint_stream_}}) {
     if (stream->count() >= fewest) continue;
@@ -205,9 +201,8 @@ std::optional<Fault> MotionGuard::check_state(const Snapshot& seen, bool moving,
   if (auto fault = stale_fault("/robot/state", seen.now - seen.state->received, kStateFresh, gap)) return fault;
   if (auto fault = state_fault(*seen.state, seen.joints, moving)) return fault;
   if (auto fault = duplicate_sender_fault(seen.senders, AllowedAction::silence)) return fault;
-  if (!seen.commanders.empty()) {
+  if (!seen.commanders.empty())
     return Fault{fmt::format("the arm is also commanded by {}: end that program first", join_words(seen.commanders))};
-  }
   if (auto fault = stale_fault(kJoints, seen.now - seen.joints->received, kFresh, gap)) return fault;
   if (seen.joints->position.allFinite()) return std::nullopt;
   return Fault{"/robot/joint_states has a position that is not a number: restart the robot"};
@@ -218,10 +213,9 @@ std::optional<Fault> MotionGuard::check_force_data(const Snapshot& seen, double 
   const EndpointReading& endpoint = *seen.endpoint;
   if (auto fault = duplicate_sender_fault(seen.senders, AllowedAction::hold)) return fault;
   if (auto fault = stale_fault(kEndpoint, seen.now - endpoint.received, kFresh, gap, AllowedAction::hold)) return fault;
-  if (!endpoint.force.allFinite() || !endpoint.pose.position.allFinite()) {
+  if (!endpoint.force.allFinite() || !endpoint.pose.position.allFinite())
     return Fault{"endpoint_state has a force or a position that is not a number: restart the robot",
                  AllowedAction::hold};
-  }
   if (!endpoint.force.isZero(0.0)) return std::nullopt;
   return Fault{
       "endpoint_state has a force of exactly zero: this robot, perhaps a Gazebo simulation, measures no forces",
@@ -260,11 +254,10 @@ std::optional<Fault> MotionGuard::check(const Snapshot& seen, const Eigen::Vecto
   if (auto fault = check_endpoint(seen, own)) return fault;
   if (auto fault = rate_fault(seen)) return fault;
   if (auto fault = check_settings(seen)) return fault;
-  if (const int joint = beyond_limits(seen.joints->position, 0.0); joint >= 0) {
+  if (const int joint = beyond_limits(seen.joints->position, 0.0); joint >= 0)
     return Fault{fmt::format("{} is at {:.1f} deg, beyond its limit: move the arm by hand",
                              kJointNames[static_cast<std::size_t>(joint)], degrees(seen.joints->position(joint))),
                  AllowedAction::hold};
-  }
   const std::string breach = workspace_.breach(tip);
   if (!breach.empty())
     return Fault{breach + ": check that position and tool agree with the config", AllowedAction::hold};
@@ -277,10 +270,9 @@ std::optional<Fault> MotionGuard::check_joints(const Snapshot& seen) {
   if (auto fault = lateness_fault("/robot/joint_states", *seen.joints, joint_delay_, AllowedAction::silence))
     return fault;
   const double jump = motion_.joints ? (seen.joints->position - motion_.joints->position).cwiseAbs().maxCoeff() : 0.0;
-  if (jump > kJump) {
+  if (jump > kJump)
     return Fault{fmt::format(
         "/robot/joint_states jumped by {:.1f} deg, faster than any joint can turn: restart the robot", degrees(jump))};
-  }
   motion_.joints = seen.joints;
   return std::nullopt;
 }
@@ -330,9 +322,8 @@ std::string MotionGuard::explain_lag(const Joints& now, double time) const {
   const double taken = std::max(time - then.time, 1e-3);
   const double turns = (now(joint) - then.arm(joint)) / taken;
   const double led = (last.target(joint) - then.target(joint)) / taken;
-  if (turns * (last.target(joint) - now(joint)) <= 0.0 || std::abs(turns) < kTurning) {
+  if (turns * (last.target(joint) - now(joint)) <= 0.0 || std::abs(turns) < kTurning)
     return ": check what blocks it, and whether other programs command it";
-  }
   return fmt::format(
       " and turns at {:.0f} deg/s instead of {:.0f}: set its speed ratio to 0.3, a Baxter's default, on "
       "/robot/limb/left/set_speed_ratio, or lower motion.travel_speed",

@@ -40,13 +40,12 @@ struct ToolOptions : Options {
   void list(Fields& fields) override {
     const char* meaning =
         "x, y, z of the tool's contact point in the frame left_hand. The z axis points away from the flange";
-    fields.reals(tip, 3, mandatory(Field("tip", meaning).in(Unit::metre).at_least(-0.6).at_most(0.6)));
+    fields.reals(tip, 3, mandatory(Field("tip", meaning).in(Unit::metre).within(-0.6, 0.6)));
     fields.real(gripper, Field("gripper",
                                "distance from the frame left_hand to the frame left_gripper. The robot reports the "
                                "pose of left_gripper. The distance is checked at the start")
                              .in(Unit::metre)
-                             .at_least(0)
-                             .at_most(0.6)
+                             .within(0, 0.6)
                              .from("baxter.urdf: 2.5 cm; 0 without a gripper, more with an electric one"));
   }
 };
@@ -64,17 +63,16 @@ struct ScenePoseOptions : Options {
     const char* corner_is =
         "x, y of the area's corner (0, 0) in the robot's frame base. In this frame, x points forward and y points to "
         "the left";
-    fields.reals(corner, 2, mandatory(Field("corner", corner_is).in(Unit::metre).at_least(-1.5).at_most(1.5)));
+    fields.reals(corner, 2, mandatory(Field("corner", corner_is).in(Unit::metre).within(-1.5, 1.5)));
     const char* height_is =
         "height of the scene's origin in the robot's frame base. All heights of the scene, including the desk, are "
         "relative to the origin";
-    fields.real(height, mandatory(Field("height", height_is).in(Unit::metre).at_least(-1).at_most(1)));
+    fields.real(height, mandatory(Field("height", height_is).in(Unit::metre).within(-1, 1)));
     fields.real(rotation, Field("rotation",
                                 "rotation of the scene about the vertical axis: the angle from the x axis of the frame "
                                 "base to the x axis of the scene")
                               .in(Unit::radian)
-                              .at_least(-6.3)
-                              .at_most(6.3));
+                              .within(-6.3, 6.3));
   }
 };
 

@@ -83,9 +83,8 @@ double Path::steepest() const {
 Joints Planner::solve(const Pose& tip, const Joints& seed, const char* what) const {
   const std::optional<Joints> found = inverse_(tip, seed);
   if (!found) throw NoPath{"no joint position within the limits puts the tool upright at " + place_text(tip)};
-  if (what != nullptr && (*found - seed).cwiseAbs().maxCoeff() > kJump) {
+  if (what != nullptr && (*found - seed).cwiseAbs().maxCoeff() > kJump)
     throw NoPath{std::string("the joints would jump ") + what + " at " + place_text(tip)};
-  }
   return *found;
 }
 
@@ -105,10 +104,9 @@ Path Planner::column(const Target& place, const Target& middle, double hover, do
   const Joints seed = solve(pose(middle, hover), untucked(), nullptr);
   const Pose top = pose(place, hover);
   Path out = vertical(solve(top, seed, nullptr), top, floor - hover, "on the way down");
-  if (out.steepest() * speed > kJointSpeed) {
+  if (out.steepest() * speed > kJointSpeed)
     throw NoPath{"a joint would have to turn faster than 0.4 rad/s on the way down to " +
                  place_text(pose(place, floor)) + " at the speed of the motion: lower it"};
-  }
   return out;
 }
 
@@ -131,10 +129,9 @@ Path Planner::line(const Joints& from, const Joints& to) const {
                        start.rotation.slerp(share, end.rotation)};
     // The seed is interpolated between both ends, so that the path does not end in another posture with the same tip.
     const Joints joints = i == count ? to : solve(between, (1.0 - share) * from + share * to, nullptr);
-    if ((joints - last).cwiseAbs().maxCoeff() > kJump) {
+    if ((joints - last).cwiseAbs().maxCoeff() > kJump)
       throw NoPath{"the joints would jump on the way at " + place_text(between) +
                    ": bring the arm over the area with its elbow out, as it is when untucked"};
-    }
     out.add(joints, step);
     last = joints;
   }

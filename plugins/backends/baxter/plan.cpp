@@ -11,8 +11,6 @@
 namespace palpate::baxter {
 namespace {
 
-using AllowedAction = Fault::AllowedAction;
-
 constexpr double kLimitMargin = 0.03;      ///< rad: margin of planned joints to their limits
 constexpr double kReachSpacing = 0.02;     ///< m between the positions of a dry run
 constexpr double kPoseError = 0.001;       ///< m: largest position error of the robot's inverse kinematics
@@ -36,12 +34,11 @@ void check_gripper(const JointReading& joints, const EndpointReading& endpoint, 
   const double aside = std::hypot(seen.x(), seen.y());
   const double turned = hand.rotation.angularDistance(endpoint.pose.rotation);
   if (aside <= kAgreement && std::abs(seen.z() - gripper) <= kAgreement && turned <= kAgreedTurn) return;
-  if (aside <= kAgreement && turned <= kAgreedTurn) {
+  if (aside <= kAgreement && turned <= kAgreedTurn)
     throw robot_error("tool.gripper",
                       fmt::format("the robot has left_gripper {} from left_hand, the config has it at {}",
                                   fine_centimetres(seen.z()), fine_centimetres(gripper)),
                       "check what is mounted on the robot, then correct tool.gripper and tool.tip");
-  }
   throw robot_error("tool.gripper",
                     fmt::format("joints and endpoint_state disagree by {} about the position of left_gripper",
                                 fine_centimetres((seen - Eigen::Vector3d(0, 0, gripper)).norm())),
@@ -58,10 +55,9 @@ std::vector<std::string> check_settings(const Snapshot& seen) {
   } settings[] = {{"set_speed_ratio", seen.speed_ratio, "0.3"},
                   {"joint_command_timeout", seen.command_timeout, "0.2 s"}};
   std::vector<std::string> out;
-  for (const auto& [topic, setting, own] : settings) {
+  for (const auto& [topic, setting, own] : settings)
     out.push_back(setting ? fmt::format("{}: {:g} from {}", topic, setting->value, setting->sender)
                           : fmt::format("{}: not published, the robot's default of {} is assumed", topic, own));
-  }
   if (seen.avoidance && (seen.avoidance->other_arm || !seen.avoidance->objects.empty())) {
     std::vector<std::string> from = seen.avoidance->objects;
     if (seen.avoidance->other_arm) from.insert(from.begin(), "the other arm");
@@ -122,21 +118,18 @@ void Tapper::check_robot() const {
   const bool moving = !options_.dry_run;
   if (const std::optional<Fault> fault = MotionGuard::check_readiness(seen_, moving))
     throw robot_error("", fault->reason);
-  if (const int joint = beyond_limits(seen_.joints->position, 0.0); joint >= 0 && moving) {
+  if (const int joint = beyond_limits(seen_.joints->position, 0.0); joint >= 0 && moving)
     throw robot_error("", fmt::format("{} is beyond its limit", kJointNames[static_cast<std::size_t>(joint)]),
                       "move the arm by hand");
-  }
   check_gripper(*seen_.joints, *seen_.endpoint, options_.tool.gripper);
   if (!moving) return;
   const std::string breach = workspace_.breach(tip_);
-  if (!breach.empty()) {
+  if (!breach.empty())
     throw robot_error("", breach,
                       "move the tool by hand to a position above the area; palpate moves the arm only there");
-  }
   const Eigen::Vector3d down = arm_.tip(seen_.joints->position).rotation * Eigen::Vector3d::UnitZ();
-  if (std::acos(std::clamp(-down.z(), -1.0, 1.0)) > kUpright) {
+  if (std::acos(std::clamp(-down.z(), -1.0, 1.0)) > kUpright)
     throw robot_error("", "the tool does not point down", "turn it by hand, within 20 degrees of the vertical");
-  }
 }
 
 /// Returns a fault if the robot's messages arrive too rarely.
@@ -156,13 +149,11 @@ std::vector<std::string> Tapper::describe(const TapRequest& request) {
   std::vector<std::string> out;
   if (seen_.joints) {
     from = Target{tip_.x(), tip_.y()};
-    if (height() < travel_height() - kNearTravel) {
+    if (height() < travel_height() - kNearTravel)
       out.push_back("rise from " + tapping::centimetres(height() - scene_.desk()) + " above the desk");
-    }
   }
-  if (options_.calibration && !calibrated_) {
+  if (options_.calibration && !calibrated_)
     out.push_back("before it, a calibration tap on the bare desk at " + tapping::place(desk_target()));
-  }
   const tapping::MotionOptions& wanted = options_.motion.of_request(request);
   const double stiffness = stiffness_at(request.line.target());
   tapping::MotionOptions motion = wanted;
@@ -209,11 +200,10 @@ Path Tapper::way_up() const {
 /// Solves inverse kinematics as configured. After a fault the driver's own kinematics is used, because the robot's
 /// service may have failed, too.
 std::optional<Joints> Tapper::inverse(const Pose& tip, const Joints& seed) {
-  if (options_.inverse_kinematics == BaxterOptions::InverseKinematics::own || recovering_) {
+  if (options_.inverse_kinematics == BaxterOptions::InverseKinematics::own || recovering_)
     return arm_.solve(tip, seed, kLimitMargin);
-  }
   // Planning needs many poses, and the robot's service may take a second per pose.
-  if (interrupted()) throw Fault{"interrupted", AllowedAction::silence, false};
+  if (interrupted()) throw Fault{"interrupted", Fault::AllowedAction::silence, false};
   const Eigen::Vector3d offset(0.0, 0.0, options_.tool.gripper);
   const std::optional<Joints> answer = robot_.solve(
       {tip.position + tip.rotation * (offset - Eigen::Map<const Eigen::Vector3d>(options_.tool.tip)), tip.rotation},

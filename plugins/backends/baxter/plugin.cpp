@@ -7,7 +7,6 @@
 #include "children/arm_lock.hpp"
 
 #include <palpate/belief.hpp>
-#include <palpate/error.hpp>
 #include <palpate/plugin.hpp>
 
 #include <cstdlib>
@@ -39,11 +38,10 @@ class RunLog {
   std::string new_bag() {
     std::string file = directory_ + "/baxter.bag";
     for (int part = 2; std::filesystem::exists(std::filesystem::symlink_status(file)); ++part) {
-      if (part == 2) {
+      if (part == 2)
         note(
             "an earlier attempt of this run has a rosbag: if the attempt was killed, repair the file with 'rosbag "
             "reindex'");
-      }
       file = directory_ + "/baxter-" + std::to_string(part) + ".bag";
     }
     return file;

@@ -13,7 +13,6 @@ namespace palpate::baxter {
 namespace {
 
 using tapping::centimetres;
-using tapping::newtons;
 using ForceSign = BaxterOptions::ForceSign;
 using AllowedAction = Fault::AllowedAction;
 
@@ -87,7 +86,7 @@ tapping::HeightResult Tapper::tap(const TapRequest& request) {
   contact.seconds = std::max(0.0, robot_.read().now - begin);
   contact.peak_force = peak_;
   const std::string touched =
-      fmt::format("contact at {}, at most {}", centimetres(contact.height), newtons(contact.force));
+      fmt::format("contact at {}, at most {}", centimetres(contact.height), tapping::newtons(contact.force));
   note_(fmt::format("tap {}: {}", request.number, contact.reason.empty() ? touched : contact.reason));
   return contact;
 }
@@ -115,16 +114,14 @@ tapping::HeightResult Tapper::attempt(const TapRequest& request) {
 
 /// Moves the origin of the scene to the measured height of the bare desk.
 void Tapper::calibrate(const tapping::HeightResult& contact) {
-  if (contact.outcome != Outcome::contact) {
+  if (contact.outcome != Outcome::contact)
     throw Fault{"the calibration tap found no desk: " + contact.reason, AllowedAction::hold};
-  }
   const double off = contact.height - scene_.desk();
-  if (std::abs(off) > options_.calibration->tolerance) {
+  if (std::abs(off) > options_.calibration->tolerance)
     throw Fault{fmt::format("the calibration tap found the desk {} {} than scene_pose.height: measure again, check "
                             "that nothing lies there, or raise calibration.tolerance",
                             centimetres(std::abs(off)), off > 0.0 ? "higher" : "lower"),
                 AllowedAction::hold};
-  }
   planner_.raise(off);
   calibrated_ = true;
   note_("calibration: the desk is " + centimetres(off) + " above its height in the config");
@@ -160,9 +157,8 @@ void Tapper::climb(const Path& up, double sign, const std::optional<double>& zer
 void Tapper::await_height(const Joints& top) {
   const double begin = seen_.now;
   while (height() < travel_height() - kNearTravel) {
-    if (seen_.now > begin + kSettlingTimeout) {
+    if (seen_.now > begin + kSettlingTimeout)
       throw Fault{"the arm did not reach the height of travel: check what holds it", AllowedAction::hold};
-    }
     step(top);
   }
 }

@@ -42,10 +42,9 @@ std::optional<double> mass_beyond(const std::string& urdf, const std::string& li
     const Element mass = inertial != nullptr ? inertial->FirstChildElement("mass") : nullptr;
     masses[attribute(one, "name")] = mass != nullptr ? mass_of(attribute(mass, "value")) : 0.0;
   }
-  for (Element one = robot->FirstChildElement("joint"); one != nullptr; one = one->NextSiblingElement("joint")) {
+  for (Element one = robot->FirstChildElement("joint"); one != nullptr; one = one->NextSiblingElement("joint"))
     hanging_on.emplace(attribute(one->FirstChildElement("parent"), "link"),
                        attribute(one->FirstChildElement("child"), "link"));
-  }
   if (masses.count(link) == 0) return {};
   double sum = 0.0;
   std::set<std::string> seen{link};

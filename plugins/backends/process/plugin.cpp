@@ -45,8 +45,7 @@ struct ProcessOptions : Options {
     fields.integer(protocol, Field("protocol",
                                    "version of requests and answers. Version 2 has lines of any direction, "
                                    "which taps from any side need")
-                                 .at_least(1)
-                                 .at_most(2));
+                                 .within(1, 2));
     fields.real(deadline,
                 Field("deadline",
                       "time limit of the answer to a tap. After this time, the tap fails and palpate ends the program")
@@ -56,8 +55,7 @@ struct ProcessOptions : Options {
                     .from("longer than motion.timeout, which the program itself should report"));
     fields.real(start, Field("start", "time added to the deadline of a tap that has to start the program")
                            .in(Unit::second)
-                           .at_least(0)
-                           .at_most(86400)
+                           .within(0, 86400)
                            .from("an estimate: drivers of robots take seconds"));
     fields.flag(repeatable, Field("repeatable",
                                   "whether a tap can be repeated without risk and with the same answer. If false, "

@@ -8,10 +8,8 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <optional>
 #include <set>
 #include <utility>
-#include <vector>
 
 namespace palpate::process {
 namespace {

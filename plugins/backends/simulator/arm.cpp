@@ -3,8 +3,6 @@
 
 #include <Eigen/Geometry>
 
-#include <palpate/math.hpp>
-
 #include <algorithm>
 
 namespace palpate::backends {
@@ -154,9 +152,8 @@ ContactModel::ContactModel(const Effects& effects, double surface, bool desk, do
   }
   if (effects.force_drift) drift_ = effects.force_drift->per_metre * normal_();
   if (effects.missed_contacts) blind_ = normal_.uniform().uniform() < effects.missed_contacts->probability;
-  if (effects.false_contacts && normal_.uniform().uniform() < effects.false_contacts->probability) {
+  if (effects.false_contacts && normal_.uniform().uniform() < effects.false_contacts->probability)
     jerk_at_ = surface + (hover - surface) * normal_.uniform().uniform();
-  }
   if (effects.latency) late_ = effects.latency->deviation * std::abs(normal_()) / tapping::GuardedTap::kPeriod;
 }
 

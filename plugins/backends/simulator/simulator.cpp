@@ -21,12 +21,11 @@ Simulator::Simulator(const Options& options, const Context& context)
   moves_ = effects.force_noise || effects.force_drift || effects.stiffness || effects.joint_lag || effects.latency ||
            effects.missed_contacts || effects.false_contacts;
   perfect_ = effects.empty();
-  if (context.from_above && scene_.highest() >= scene_.desk() + options.motion.at(0).hover) {
+  if (context.from_above && scene_.highest() >= scene_.desk() + options.motion.at(0).hover)
     throw Error("motion.hover",
                 fmt::format("an object is {:g} cm high, but the arm travels at {:g} cm",
                             100.0 * (scene_.highest() - scene_.desk()), 100.0 * options.motion.at(0).hover),
                 "raise motion.hover or lower the object");
-  }
 }
 
 TapResult Simulator::tap(const TapRequest& request) {
@@ -131,10 +130,9 @@ TapResult Simulator::imperfect_tap(const TapRequest& request, const PlannedDesce
   const double y = target.y + error.y();
   double surface = contact_height(scene, effects, x, y);
   const bool desk = surface <= scene_.desk();
-  if (effects.foreign_objects) {
+  if (effects.foreign_objects)
     surface =
         std::min(surface + foreign_object_height(*effects.foreign_objects, context_.seed, x, y), tap.descent.hover);
-  }
   tapping::HeightResult contact = moves_ ? simulated_tap(request.number, tap, surface, desk) : ideal_tap(tap, surface);
   contact.seconds += tapping::travel_seconds(tap.motion, request);
   double dz = error.z();

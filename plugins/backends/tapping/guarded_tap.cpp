@@ -198,12 +198,11 @@ void GuardedTap::conclude(const Rise& found) {
   const bool again = arm_ == ArmKind::real && found.is_contact && refused_ && std::abs(*refused_ - first_) < kSamePlace;
   if (!asks || lasts || again) return finish({Outcome::contact, found.height, peak_, 0.0, {}});
   if (found.is_contact) refused_ = first_;
-  if (presses && !found.is_contact && too_soft()) {
+  if (presses && !found.is_contact && too_soft())
     return finish({Outcome::aborted, 0.0, 0.0, 0.0,
                    fmt::format("a contact is too soft: its force rises by {:.0f} N/m, but an object needs {:.0f} N/m "
                                "from at most {:.0f} cm above, to differ from a zero that changes with the pose",
                                found.slope, kSoftestRise, 100.0 * kFarthestOnset)});
-  }
   enter(Stage::descend);
 }
 

@@ -22,10 +22,9 @@ std::string per_second(double value) { return centimetres(value) + "/s"; }
 std::string descent(const MotionOptions& motion, double desk, const TapRequest& request) {
   const Descent plan = plan_descent(motion, desk, request.predicted);
   std::string expected;
-  if (plan.start < plan.hover) {
+  if (plan.start < plan.hover)
     expected = fmt::format("at {} to {} above the desk, just above what is expected, and on ",
                            per_second(motion.adaptive_hover->speed), centimetres(plan.start - desk));
-  }
   const bool steps = motion.type == MotionOptions::Type::paper;
   return fmt::format("descend {}at {}{} to at most {} below the desk", expected, per_second(motion.speed),
                      steps ? " in steps of " + centimetres(motion.step) : "", centimetres(desk - plan.floor));

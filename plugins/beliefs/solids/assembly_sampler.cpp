@@ -8,7 +8,6 @@
 #include <palpate/math.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <numeric>
 
 namespace palpate {
@@ -17,14 +16,9 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-double normal(Random& random) {
-  const double radius = std::sqrt(-2.0 * math::log(1.0 - random.uniform()));
-  return radius * math::cos(2.0 * kHalfTurn * random.uniform());
-}
-
 Vector3d normal3(Random& random) {
   Vector3d out;
-  for (double& one : out) one = normal(random);
+  for (double& one : out) one = random.normal();
   return out;
 }
 
@@ -74,7 +68,7 @@ Primitive draw(const Vector3d& near, Random& random) {
 /// Moves one of the two faces across an axis by a Gaussian step with standard deviation `size`, metres; the opposite
 /// face stays. A cylinder usually keeps a circular section.
 void move_face(Primitive& primitive, Eigen::Index axis, double size, Random& random) {
-  const double by = size * normal(random);
+  const double by = size * random.normal();
   Vector3d grown = Vector3d::Zero();
   grown(axis) = by / 2;
   primitive.half += grown;
@@ -86,7 +80,7 @@ void move_face(Primitive& primitive, Eigen::Index axis, double size, Random& ran
 /// Rotates a primitive about the vertical, and often about a horizontal axis, too, if it neither stands nor lies.
 void rotate(Primitive& primitive, Random& random) {
   double angle = math::exp(between(math::log(0.01), math::log(1.0), random));
-  angle *= normal(random);
+  angle *= random.normal();
   const double tilt = std::abs(primitive.turn(2, 2));
   if (tilt < 1.0 - 1e-9 && tilt > 1e-9 && random.uniform() < 0.7) {
     Vector3d level = normal3(random);
@@ -409,7 +403,7 @@ bool AssemblySampler::fit_to_contact(Primitive& primitive) {
     const double away = at.head<2>().norm();
     if (away < 1e-6) return false;
     const double by =
-        away - std::min(primitive.half.x(), primitive.half.y()) + 0.5 * settings_.misfit * normal(random_);
+        away - std::min(primitive.half.x(), primitive.half.y()) + 0.5 * settings_.misfit * random_.normal();
     const double how = random_.uniform();
     const double grow = how < 0.4 ? 0.5 : how < 0.7 ? 0.0 : 1.0;
     primitive.half.x() += grow * by;
@@ -420,7 +414,7 @@ bool AssemblySampler::fit_to_contact(Primitive& primitive) {
   }
   auto axis = static_cast<Eigen::Index>(random_.index(3));
   if (random_.uniform() < 0.7) (at.cwiseAbs() - primitive.half).cwiseAbs().minCoeff(&axis);
-  double by = std::abs(at(axis)) - primitive.half(axis) + 0.5 * settings_.misfit * normal(random_);
+  double by = std::abs(at(axis)) - primitive.half(axis) + 0.5 * settings_.misfit * random_.normal();
   if (primitive.hollow() && random_.uniform() < 0.3) by += primitive.wall;
   primitive.half(axis) += by / 2;
   Vector3d shift = Vector3d::Zero();
@@ -440,7 +434,7 @@ bool AssemblySampler::change(Primitive& primitive) {
   } else if (kind < 0.6) {
     move_face(primitive, axis, size, random_);
   } else if (kind < 0.7) {  // scales one axis, or both horizontal axes
-    const double factor = math::exp(10.0 * size * normal(random_));
+    const double factor = math::exp(10.0 * size * random_.normal());
     if (random_.uniform() < 0.5 || primitive.form != Primitive::Form::box) {
       primitive.half.head<2>() *= factor;
     } else {
@@ -455,7 +449,7 @@ bool AssemblySampler::change(Primitive& primitive) {
     if (form == Primitive::Form::cylinder) primitive.half.y() = primitive.half.x();
   } else if (kind < 0.94) {
     if (primitive.hollow() && random_.uniform() < 0.5) {
-      primitive.wall *= math::exp(0.3 * normal(random_));
+      primitive.wall *= math::exp(0.3 * random_.normal());
     } else {
       primitive.wall = primitive.hollow() ? 0.0 : between(0.002, 0.007, random_);
     }

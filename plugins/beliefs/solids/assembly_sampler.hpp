@@ -10,7 +10,6 @@
 #include <palpate/random.hpp>
 #include <palpate/scene.hpp>
 
-#include <cmath>
 #include <limits>
 #include <vector>
 

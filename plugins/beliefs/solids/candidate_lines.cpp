@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "solids/candidate_lines.hpp"
 
-#include "solids/residual_gp.hpp"
-
 #include <palpate/error.hpp>
 #include <palpate/math.hpp>
 
@@ -83,10 +81,9 @@ SampledLines sample_lines(const SearchBall& region, double desk, std::size_t cou
   out.lines.starts.resize(static_cast<Eigen::Index>(count), 3);
   out.lines.directions.resize(static_cast<Eigen::Index>(count), 3);
   for (std::size_t tries = 0; out.anywhere.size() < count;) {
-    if (tries >= kTries * count) {
+    if (tries >= kTries * count)
       throw Error("backend", "rejects every tap from any side that was tried",
                   "use belief=height_map for an arm that taps from above");
-    }
     const std::size_t batch = count - out.anywhere.size();
     Candidates drawn;
     drawn.lengths = out.lines.lengths;

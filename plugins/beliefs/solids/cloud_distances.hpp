@@ -6,7 +6,6 @@
 
 #include <Eigen/Core>
 
-#include <functional>
 #include <vector>
 
 namespace palpate {

@@ -10,7 +10,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <utility>
 
 namespace palpate {
 namespace {
@@ -48,10 +47,9 @@ std::vector<ResidualGp::ResidualDatum> ResidualGp::contacts_of(const Assembly& s
     // is not the one that was touched.
     constexpr double kTurned = 0.5;
     if (!touch.normal || touch.normal->dot(place.normal) < kTurned) continue;
-    if (!kernel_.has_gradient()) {
+    if (!kernel_.has_gradient())
       throw Error("kernel", "is not differentiable everywhere, but measured surface normals need its derivatives",
                   "choose matern32, matern52 or rbf");
-    }
     const Vector3d one = touch.normal->unitOrthogonal();
     for (const Vector3d& across : {one, Vector3d(touch.normal->cross(one))})
       slopes.push_back({place, across, across.dot(place.normal), settings_.tilt});

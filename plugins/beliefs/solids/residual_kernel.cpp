@@ -41,11 +41,10 @@ bool knows_distances_alone(const Kernel& kernel) {
 }  // namespace
 
 ResidualKernel::ResidualKernel(std::shared_ptr<const Kernel> kernel) : kernel_(std::move(kernel)) {
-  if (!knows_distances_alone(*kernel_)) {
+  if (!knows_distances_alone(*kernel_))
     throw Error("kernel",
                 "depends on more than the distance, but surface: implicit needs a kernel of the distance alone",
                 "choose one with a single length scale, such as matern32");
-  }
   kernel_->variance(Points::Zero(1, 2), Eigen::Map<VectorXd>(&unit_, 1));
 }
 
@@ -72,12 +71,11 @@ MatrixXd ResidualKernel::covariances(const DatumTable& a, const DatumTable& b) c
 void ResidualKernel::covariances(const DatumTable& a, const DatumTable& b, Points& apart, MatrixOut out) const {
   const Eigen::Index n = a.at.rows();
   const Eigen::Index m = b.at.rows();
-  for (Eigen::Index j = 0; j < m; ++j) {
+  for (Eigen::Index j = 0; j < m; ++j)
     apart.col(0).segment(j * n, n) =
         ((a.at.col(0).array() - b.at(j, 0)).square() + (a.at.col(1).array() - b.at(j, 1)).square() +
          (a.at.col(2).array() - b.at(j, 2)).square())
             .sqrt();
-  }
   kernel_->covariance(apart.topRows(n * m), Points::Zero(1, 2), Eigen::Map<MatrixXd>(out.data(), n * m, 1));
   if (a.slopes || b.slopes) {
     VectorXd across(n * m), along(n * m);
@@ -103,12 +101,11 @@ void ResidualKernel::covariances(const DatumTable& a, const DatumTable& b, Point
     }
   }
   const double half = 0.5 * signal_ * signal_;
-  for (Eigen::Index j = 0; j < m; ++j) {
+  for (Eigen::Index j = 0; j < m; ++j)
     out.col(j).array() *=
         half *
         (1.0 + (a.normal.col(0) * b.normal(j, 0) + a.normal.col(1) * b.normal(j, 1) + a.normal.col(2) * b.normal(j, 2))
                    .array());
-  }
 }
 
 }  // namespace palpate

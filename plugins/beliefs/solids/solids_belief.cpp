@@ -61,12 +61,11 @@ SolidsBelief::SolidsBelief(const SolidsOptions& options, const Context& context)
       values_(context.scene.desk()),
       errors_(region_) {
   lines_.lines.fixed = false;
-  if (context.run.fitting.type != "fixed") {
+  if (context.run.fitting.type != "fixed")
     throw Error(
         "fitting",
         fmt::format("{} fits nothing for the belief solids, which has fixed hyperparameters", context.run.fitting.type),
         "use fitting=fixed");
-  }
   if (!options.view) return;
   constexpr std::size_t kMost = 160;  // number of kept rays; the time per touch grows with it
   const std::vector<SurfaceTouch> view =

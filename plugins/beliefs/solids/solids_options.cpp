@@ -6,12 +6,10 @@ namespace palpate {
 void ResidualOptions::list(Fields& fields) {
   fields.real(signal, Field("signal", "prior standard deviation of the distance between the particle and the surface")
                           .in(Unit::metre)
-                          .at_least(1e-12)
-                          .at_most(1e12));
+                          .within(1e-12, 1e12));
   fields.real(noise, Field("noise", "standard deviation of the noise of one contact along the surface normal")
                          .in(Unit::metre)
-                         .at_least(0)
-                         .at_most(1e12));
+                         .within(0, 1e12));
 }
 
 void SideViewOptions::list(Fields& fields) {
@@ -23,9 +21,8 @@ void SideViewOptions::list(Fields& fields) {
   fields.real(elevation,
               Field("elevation", "elevation angle of the camera above the horizontal, seen from the middle of the area")
                   .in(Unit::radian)
-                  .at_least(0)
-                  .at_most(kUpright * (1 + 1e-12)));
-  fields.integer(rays, Field("rays", "number of camera rays, rounded to a square number").at_least(16).at_most(40000));
+                  .within(0, kUpright * (1 + 1e-12)));
+  fields.integer(rays, Field("rays", "number of camera rays, rounded to a square number").within(16, 40000));
 }
 
 void SolidsOptions::list(Fields& fields) {
@@ -33,14 +30,12 @@ void SolidsOptions::list(Fields& fields) {
   fields.integer(
       particles,
       Field("particles", "number of particles. A particle is one hypothesis of the scene, made of simple solids")
-          .at_least(2)
-          .at_most(1000));
+          .within(2, 1000));
   fields.integer(
       moves,
       Field("moves",
             "number of Monte Carlo moves per particle after each tap. The moves fit the particle to the contacts")
-          .at_least(0)
-          .at_most(100000));
+          .within(0, 100000));
   fields.real(
       model_discrepancy,
       Field("model_discrepancy", "standard deviation between the objects' surfaces and the simple solids of the model")

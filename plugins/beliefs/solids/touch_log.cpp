@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "solids/touch_log.hpp"
 
-#include <utility>
-
 namespace palpate {
 namespace {
 

@@ -78,9 +78,8 @@ class NegativeObjective final : public ceres::FirstOrderFunction {
     Eigen::VectorXd slope(start_.size());
     if (!objective_.evaluate(x.data(), cost, gradient != nullptr ? slope.data() : nullptr)) return false;
     *cost = -*cost;
-    if (gradient != nullptr) {
+    if (gradient != nullptr)
       Eigen::Map<Eigen::VectorXd>(gradient, start_.size()).noalias() = -metric_.transpose() * slope;
-    }
     return true;
   }
 
@@ -186,9 +185,8 @@ Eigen::VectorXd look_around(Objective& objective, const FitModel& model, const E
 /// Returns a uniform random start within two standard deviations of the priors.
 Eigen::VectorXd random_start(const std::vector<HyperPrior>& expectations, Random& random) {
   Eigen::VectorXd x(static_cast<Eigen::Index>(expectations.size()));
-  for (std::size_t i = 0; i < expectations.size(); ++i) {
+  for (std::size_t i = 0; i < expectations.size(); ++i)
     x(static_cast<Eigen::Index>(i)) = expectations[i].centre + (4.0 * random.uniform() - 2.0) * expectations[i].spread;
-  }
   return within_limits(x, expectations);
 }
 
@@ -261,9 +259,8 @@ class Ceres final : public Fitting {
       return HyperPrior{math::log(median), spread, math::log(median / factor), math::log(median * factor)};
     };
     std::vector<HyperPrior> out;
-    for (const KernelParameter& one : model.kernel.parameters()) {
+    for (const KernelParameter& one : model.kernel.parameters())
       out.push_back(one.unit == Unit::metre ? log_normal(side_ / 12.0, 0.4, 1e4) : log_normal(1.0, 1.0, 1e3));
-    }
     // Squares of noise and signal have twice the spread of the standard deviations.
     // If the mean is unknown, there is no desk and therefore no step.
     const double noise = model.mean_ratio > 0.0 ? 0.05 : 0.3;

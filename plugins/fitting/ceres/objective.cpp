@@ -5,7 +5,6 @@
 
 #include <palpate/math.hpp>
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -232,9 +231,8 @@ void Objective::invert() {
 double Objective::likelihood(const double* log_signals) const {
   const auto n = static_cast<double>(model_.size());
   double sum = 0.0;
-  for (Eigen::Index i = 0; i < model_.outputs(); ++i) {
+  for (Eigen::Index i = 0; i < model_.outputs(); ++i)
     sum -= 0.5 * (squares_(i) + log_determinant_ + n * (kLogTwoPi + log_signals[i]));
-  }
   return sum;
 }
 

@@ -36,12 +36,11 @@ struct CeresOptions : Options {
     fields.choice(mean, Field("mean", "prior mean of the GP"),
                   {{"keep", "mean from the config", {}},
                    {"fit", "constant mean, fitted together with the other hyperparameters", {}}});
-    fields.integer(every, Field("every", "number of taps from one fit to the next").at_least(1).at_most(100000));
+    fields.integer(every, Field("every", "number of taps from one fit to the next").within(1, 100000));
     fields.integer(starts, Field("starts",
                                  "number of optimisation starts. One start is at or near the present values. The other "
                                  "starts are random values within the range of the priors")
-                               .at_least(1)
-                               .at_most(1000));
+                               .within(1, 1000));
   }
 };
 

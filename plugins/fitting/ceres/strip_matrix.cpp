@@ -138,9 +138,8 @@ bool factorise(StripMatrix& matrix, double* reciprocals) {
     }
     for (Index s = end; s < strips; s += kTogether) {
       const Index last = std::min(s + kTogether, strips);
-      for (Index j = end; j < last; ++j) {
+      for (Index j = end; j < last; ++j)
         update<false>(matrix, matrix, matrix, j > s ? j : s, last, j, 8 * panel, 8 * end);
-      }
     }
   }
   return true;
@@ -157,9 +156,8 @@ void invert_transposed(const StripMatrix& factor, const double* reciprocals, Str
       for (Index s = 0; s <= j; ++s) solve_tile(out.at(s, 8 * j)->numbers, own, reciprocals + 8 * j);
     }
     for (Index s = 0; s < end; s += kTogether) {
-      for (Index j = end; j < strips; ++j) {
+      for (Index j = end; j < strips; ++j)
         update<false>(out, out, factor, s, std::min(s + kTogether, end), j, 8 * panel, 8 * end);
-      }
     }
   }
 }

@@ -153,10 +153,9 @@ Prior::Prior(const Settings& settings)
       longest_(0.5 * std::min(settings.max_length, math::hypot(settings.area.width, settings.area.depth))),
       range_(math::log(longest_ / (0.5 * settings.min_width))) {
   constexpr double kRoom = 1.01;  // with a smaller ratio, almost no draw fits
-  if (std::min(settings.area.width, settings.area.depth) < kRoom * settings.min_width) {
+  if (std::min(settings.area.width, settings.area.depth) < kRoom * settings.min_width)
     throw Error("footprint", "hardly any primitive of this prior fits into the area",
                 "make min_width smaller or the area larger");
-  }
 }
 
 Form Prior::draw_form(double longest, Random& random) const {

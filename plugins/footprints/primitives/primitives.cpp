@@ -40,27 +40,23 @@ struct PrimitivesOptions : LaplaceOptions {
     fields.real(
         hole_probability,
         Field("hole_probability", "prior probability that a primitive has a hole. The hole is also a box or an ellipse")
-            .at_least(0)
-            .at_most(0.9));
+            .within(0, 0.9));
     fields.real(label_error_probability,
                 Field("label_error_probability",
                       "probability that a contact with an object is labelled as desk, and the default of "
                       "false_contact_probability")
-                    .at_least(1e-6)
-                    .at_most(0.4));
+                    .within(1e-6, 0.4));
     fields.real(false_contact_probability, Field("false_contact_probability",
                                                  "probability that a contact with the desk is labelled as an object; "
                                                  "not given: equal to label_error_probability")
-                                               .at_least(1e-6)
-                                               .at_most(0.4));
+                                               .within(1e-6, 0.4));
     fields.real(position_noise,
                 Field("position_noise", "standard deviation of the position of a contact, along x and y")
                     .in(Unit::metre)
                     .at_least(0));
-    fields.real(push_probability,
-                Field("push_probability", "probability that the objects are pushed between two contacts")
-                    .at_least(0)
-                    .at_most(0.5));
+    fields.real(
+        push_probability,
+        Field("push_probability", "probability that the objects are pushed between two contacts").within(0, 0.5));
     fields.flag(heights,
                 Field("heights", "whether a height difference between contacts is evidence for two primitives"));
     fields.real(
@@ -74,8 +70,7 @@ struct PrimitivesOptions : LaplaceOptions {
     fields.integer(particles, Field("particles",
                                     "number of particles. A particle is one hypothesis of the outlines. The number is "
                                     "doubled for ten contacts after each discovery of an object")
-                                  .at_least(100)
-                                  .at_most(100000));
+                                  .within(100, 100000));
     LaplaceOptions::list(fields);
     fields.require(min_width < max_length, "max_length", "is not larger than min_width");
   }

@@ -273,9 +273,9 @@ Push draw_push(const Area& area, Random& random) {
   Push out;
   out.origin_x = 0.5 * area.width;
   out.origin_y = 0.5 * area.depth;
-  out.dx = kPushShift * normal(random);
-  out.dy = kPushShift * normal(random);
-  const double angle = kPushTurn * normal(random);
+  out.dx = kPushShift * random.normal();
+  out.dy = kPushShift * random.normal();
+  const double angle = kPushTurn * random.normal();
   out.cosine = math::cos(angle);
   out.sine = math::sin(angle);
   return out;
@@ -304,11 +304,6 @@ bool change_push(Push& push, int taps, Random& random) {
 }
 
 }  // namespace
-
-double normal(Random& random) {
-  const double radius = std::sqrt(-2.0 * math::log(1.0 - random.uniform()));
-  return radius * math::cos(2.0 * kPi * random.uniform());
-}
 
 void propose(Proposal& out, const Hypothesis& from, const Prior& prior, const Taps& taps, double which,
              Random& random) {

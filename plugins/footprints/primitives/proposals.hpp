@@ -10,9 +10,6 @@
 
 namespace palpate::footprints {
 
-/// Returns a standard normal number (Box and Muller 1958).
-double normal(Random& random);
-
 /// A proposed change of a hypothesis.
 struct Proposal {
   /// Each of change_form, replace, flip_noise and push is its own reverse. The reverse of add is remove, and that of

@@ -4,7 +4,6 @@
 #include <palpate/math.hpp>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <iterator>
 #include <limits>

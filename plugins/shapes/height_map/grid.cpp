@@ -64,10 +64,9 @@ Grid from_csv(std::string bytes, const std::string& file) {
       const std::string_view cell = stripped(line.substr(begin, end - begin));
       double value = 0.0;
       const auto read = std::from_chars(cell.data(), cell.data() + cell.size(), value);
-      if (read.ec != std::errc() || read.ptr != cell.data() + cell.size() || cell.empty()) {
+      if (read.ec != std::errc() || read.ptr != cell.data() + cell.size() || cell.empty())
         throw Error(fmt::format("{}:{}", file, rows), fmt::format("'{}' is not a number", cell.substr(0, 40)),
                     "write one row of numbers per line, separated by commas, without a header");
-      }
       values.push_back(value);
       begin = end + 1;
     }

@@ -55,10 +55,9 @@ class HeightMapShape final : public Shape {
     half_width_ = spacing_ * static_cast<double>(rows - 1) / 2;
     constexpr double kLargest = 2.0;
     const double size = std::max({2 * half_length_, 2 * half_width_, highest_});
-    if (size > kLargest) {
+    if (size > kLargest)
       throw Error(options.file, "is " + std::to_string(size) + " m large, at most 2 m are allowed",
                   "check unit and spacing");
-    }
   }
 
   double first_intersection(const Line& line) const override {

@@ -17,7 +17,6 @@
 #include <cstring>
 #include <filesystem>
 #include <memory>
-#include <new>
 #include <sstream>
 #include <string_view>
 #include <utility>
@@ -77,20 +76,17 @@ void make_stl_plain(std::string& bytes, const std::string& file) {
   std::transform(bytes.begin(), bytes.end(), bytes.begin(), [](unsigned char c) { return std::tolower(c); });
   const std::string_view text(bytes);
   const std::size_t begin = text.find_first_not_of(" \t\r\n");
-  if (begin == std::string_view::npos || text.substr(begin, 5) != "solid") {
+  if (begin == std::string_view::npos || text.substr(begin, 5) != "solid")
     throw Error(file, "is not an STL file, neither text nor binary, or is cut short", kExportAgain);
-  }
-  if (text.rfind("endsolid") == std::string_view::npos) {
+  if (text.rfind("endsolid") == std::string_view::npos)
     throw Error(file, "is cut short: the word 'endsolid' is missing", kExportAgain);
-  }
 }
 
 /// Returns the number of line ends in `text`. A line end is CR, LF or CRLF.
 std::size_t line_ends(std::string_view text) {
   std::size_t out = 0;
-  for (std::size_t i = 0; i < text.size(); ++i) {
+  for (std::size_t i = 0; i < text.size(); ++i)
     out += text[i] == '\r' || (text[i] == '\n' && (i == 0 || text[i - 1] != '\r')) ? 1 : 0;
-  }
   return out;
 }
 
@@ -101,9 +97,8 @@ void check_ply(const std::string& bytes, const std::string& file) {
   std::size_t header = bytes.find(last, 1);
   while (header != std::string::npos && bytes[header - 1] != '\n' && bytes[header - 1] != '\r')
     header = bytes.find(last, header + 1);
-  if (header == std::string::npos) {
+  if (header == std::string::npos)
     throw Error(file, "is not a PLY file or is cut short: the line 'end_header' is missing", kExportAgain);
-  }
   std::string lines = bytes.substr(0, header);
   std::replace(lines.begin(), lines.end(), '\r', '\n');
   std::istringstream in(lines);

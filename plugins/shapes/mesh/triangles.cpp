@@ -37,10 +37,9 @@ void check_size(const Vector3d& extent, double furthest, double unit, const std:
   const std::string remedy = "is the unit of " + text(unit) + " m right?";
   if (size > kLargest) throw Error(file, "is " + text(size) + " m large, at most 2 m are allowed", remedy);
   if (size < kSmallest) throw Error(file, "is " + text(size) + " m large, at least 1 mm is needed", remedy);
-  if (furthest * 0x1p-24 > kPrecision) {
+  if (furthest * 0x1p-24 > kPrecision)
     throw Error(file, "lies " + text(furthest) + " m from its origin, where single precision has errors above 1e-6 m",
                 "move it to the origin before the export");
-  }
 }
 
 void check_areas(const Triangles& mesh, const std::string& file) {
@@ -76,9 +75,8 @@ void check_closed(const Triangles& mesh, const std::string& file) {
   std::vector<std::uint64_t> edges;
   edges.reserve(3 * mesh.corners.size());
   for (const auto& [a, b, c] : mesh.corners) {
-    for (const auto& [from, to] : {std::pair(a, b), std::pair(b, c), std::pair(c, a)}) {
+    for (const auto& [from, to] : {std::pair(a, b), std::pair(b, c), std::pair(c, a)})
       edges.push_back(std::uint64_t{std::min(from, to)} << 32 | std::max(from, to));
-    }
   }
   std::sort(edges.begin(), edges.end());
   std::size_t open = 0;
@@ -89,13 +87,12 @@ void check_closed(const Triangles& mesh, const std::string& file) {
     if (next == i + 1 && open++ == 0) first_open = edges[i];
     i = next;
   }
-  if (open > 0) {
+  if (open > 0)
     throw Error(file,
                 "has holes: " + std::to_string(open) + " edges belong to one triangle only, one from " +
                     place(mesh.points[first_open >> 32]) + " to " + place(mesh.points[first_open & 0xffffffff]) +
                     " from the middle of its base",
                 "close them in the program that made the mesh, or write `holes: allow`");
-  }
 }
 
 /// The points keep the order of the file, in which neighbours are close to each other. The boxes in mesh.cpp rely on
@@ -105,11 +102,10 @@ Triangles join(const Soup& soup, const MeshOptions& options) {
   Eigen::AlignedBox3d box;
   for (std::size_t i = 0; i < soup.size(); ++i) {
     const Vector3d point = upright(soup[i], y_is_up);
-    if (!point.allFinite()) {
+    if (!point.allFinite())
       throw Error(options.file,
                   "triangle " + std::to_string(i / 3 + 1) + " has a coordinate that is not a finite number",
                   "export it again");
-    }
     box.extend(point);
   }
   const double furthest = box.min().cwiseAbs().cwiseMax(box.max().cwiseAbs()).maxCoeff();

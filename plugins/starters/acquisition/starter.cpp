@@ -8,9 +8,9 @@ struct MyAcquisitionOptions : Options {
   double trust = 0.5;
 
   void list(Fields& fields) override {
-    fields.real(trust, Field("trust", "exponent of the object probability. At 0, only the height uncertainty counts")
-                           .at_least(0)
-                           .at_most(10));
+    fields.real(
+        trust,
+        Field("trust", "exponent of the object probability. At 0, only the height uncertainty counts").within(0, 10));
   }
 };
 

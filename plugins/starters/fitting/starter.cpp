@@ -12,7 +12,7 @@ struct MyFittingOptions : Options {
   std::int64_t every = 5;
 
   void list(Fields& fields) override {
-    fields.integer(every, Field("every", "number of taps from one fit to the next").at_least(1).at_most(1000));
+    fields.integer(every, Field("every", "number of taps from one fit to the next").within(1, 1000));
   }
 };
 

@@ -14,7 +14,7 @@ struct MyFootprintOptions : Options {
     fields.real(reach, Field("reach", "distance over which the label of a contact influences the probability")
                            .in(Unit::metre)
                            .above(0));
-    fields.real(prior, Field("prior", "probability of an object far from all contacts").at_least(0).at_most(1));
+    fields.real(prior, Field("prior", "probability of an object far from all contacts").within(0, 1));
   }
 };
 

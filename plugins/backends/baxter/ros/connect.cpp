@@ -75,15 +75,13 @@ class ConnectionAttempt {
     const auto version = network_.master.query("getParam", kVersionParameter, until(kExplainedDeadline));
     if (!version)
       return robot_error(kVersionParameter, "is not set at the master", "check that it is the master of a Baxter");
-    if (version->rfind("1.2.", 0) != 0) {
+    if (version->rfind("1.2.", 0) != 0)
       throw robot_error(kVersionParameter, "the robot's software is " + *version,
                         "install software 1.2 on the robot, which this driver needs");
-    }
     if (!missing.empty()) return nobody;
-    if (options_.inverse_kinematics && Graph::of(graph.services, kSolverService).empty()) {
+    if (options_.inverse_kinematics && Graph::of(graph.services, kSolverService).empty())
       return robot_error(kSolverService, "no node offers this service",
                          "set inverse_kinematics: own, or start the robot again");
-    }
     return {};
   }
 
@@ -175,20 +173,18 @@ class ConnectionAttempt {
   }
 
   Error why_not_heard(RosConnection& connection) const {
-    if (connection.read().now == 0.0) {
+    if (connection.read().now == 0.0)
       return robot_error("/use_sim_time", "is set, but /clock publishes no time",
                          "start the simulated clock, or delete the parameter and restart all nodes");
-    }
     const Graph graph = network_.master.graph(until(kExplainedDeadline));
     const auto came = heard(connection);
     for (std::size_t i = 0; i < came.size(); ++i) {
       if (!came[i]) return why_silent(RosConnection::needed()[i], graph, connection.read().malformed);
     }
     const auto& nodes = Graph::of(graph.subscribers, kCommandTopic);
-    if (nodes.empty()) {
+    if (nodes.empty())
       return robot_error(kCommandTopic, "no node subscribes to it",
                          "wait until the robot has started; dry_run: true works without");
-    }
     const std::string name = network_.own_name.empty() ? boost::asio::ip::host_name() : network_.own_name;
     return robot_error(kCommandTopic,
                        join_words(nodes) +
@@ -206,12 +202,11 @@ class ConnectionAttempt {
       try {
         const MessageType offer =
             query_publisher(*place, needed.name, within(kOnePublisher, until(kExplainedDeadline)));
-        if (offer.md5 != needed.md5) {
+        if (offer.md5 != needed.md5)
           return robot_error(needed.name,
                              fmt::format("{} sends {} with md5 sum {}, but this driver needs {} with {}", node,
                                          offer.type, offer.md5, needed.type, needed.md5),
                              "install the robot's software 1.2");
-        }
         mute.push_back(node);
       } catch (const NetworkError& reason) {
         why = no_publisher(needed.name, node, *place, reason);

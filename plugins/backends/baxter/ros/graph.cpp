@@ -62,9 +62,8 @@ std::string http_body(TcpConnection& wire, Deadline deadline) {
   while ((head = text.find("\r\n\r\n")) == std::string::npos) {
     const std::string some = wire.receive_some(4096, deadline);
     text += some;
-    if (some.empty() || std::string("HTTP/").compare(0, text.size(), text, 0, 5) != 0 || text.size() > kLongest) {
+    if (some.empty() || std::string("HTTP/").compare(0, text.size(), text, 0, 5) != 0 || text.size() > kLongest)
       throw not_ros();
-    }
   }
   std::string body = text.substr(head + 4);
   text.resize(head + 2);
@@ -200,9 +199,8 @@ Address look_up(const std::string& host, int port, Deadline deadline) {
     const auto task = std::make_shared<std::packaged_task<Address()>>([host] { return first_address(host, 0); });
     std::future<Address> found = task->get_future();
     thread_without_signals([task] { (*task)(); }).detach();
-    if (found.wait_until(deadline) != std::future_status::ready) {
+    if (found.wait_until(deadline) != std::future_status::ready)
       throw NetworkError(FailureCause::name, "looking up its host takes too long");
-    }
     out = found.get();
   }
   out.port(static_cast<unsigned short>(port));
@@ -251,9 +249,8 @@ std::string TcpConnection::receive_some(std::size_t most, Deadline deadline) {
 
 std::string TcpConnection::receive(std::size_t bytes, Deadline deadline) {
   std::string all(bytes, '\0');
-  if (finish(deadline, [&](const auto& done) { asio::async_read(socket_, asio::buffer(all), done); }) < bytes) {
+  if (finish(deadline, [&](const auto& done) { asio::async_read(socket_, asio::buffer(all), done); }) < bytes)
     throw NetworkError(FailureCause::nonsense, "the connection was ended");
-  }
   return all;
 }
 
@@ -302,9 +299,8 @@ MessageType query_publisher(const HostPort& node, const std::string& topic, Dead
   const std::string xml = call_method(look_up(node.host, node.port, deadline), "requestTopic",
                                       {XmlRpcValue(kCaller), XmlRpcValue(topic), protocols}, deadline);
   return parse_answer(xml, [&](XmlRpcValue& way) {
-    if (way.getType() != XmlRpcValue::TypeArray || way.size() < 3) {
+    if (way.getType() != XmlRpcValue::TypeArray || way.size() < 3)
       throw NetworkError(FailureCause::nonsense, "the node denies that it publishes the topic");
-    }
     TcpConnection wire(look_up(static_cast<std::string&>(way[1]), static_cast<int>(way[2]), deadline), deadline);
     Header answer = exchange_headers(
         wire, {{"callerid", kCaller}, {"topic", topic}, {"md5sum", "*"}, {"type", "*"}, {"message_definition", ""}},

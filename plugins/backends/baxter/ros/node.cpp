@@ -51,13 +51,11 @@ bool is_own_address(const std::string& text) {
 std::string own_name(Deadline deadline) {
   const std::string ip = variable("ROS_IP");
   const std::string name = variable("ROS_HOSTNAME");
-  if (!ip.empty() && !name.empty()) {
+  if (!ip.empty() && !name.empty())
     throw robot_error("ROS_IP=" + ip, "is set together with ROS_HOSTNAME=" + name, "unset one of them");
-  }
-  if (!ip.empty() && !is_own_address(ip)) {
+  if (!ip.empty() && !is_own_address(ip))
     throw robot_error("ROS_IP=" + ip, "is not an address of this machine, so the robot cannot reach it",
                       "set it to the address of the interface on the robot's network (ip -brief address)");
-  }
   if (!name.empty()) {
     try {
       look_up(name, 1, within(kLookUp, deadline));
@@ -154,14 +152,12 @@ Error unreachable(const std::string& where, const std::string& who, const HostPo
 void start_node(const Network& network) {
   static const Node node(network);
   running = &node;
-  if (node.network.uri != network.uri) {
+  if (node.network.uri != network.uri)
     throw robot_error(network.where(),
                       "this process is already a node of " + node.network.uri + " and cannot change its master",
                       "start another process");
-  }
-  if (!ros::ok()) {
+  if (!ros::ok())
     throw robot_error(network.where(), "the ROS node of this process was told to shut down", "start it again");
-  }
   point_roscpp_at(network.uri);  // an earlier connection may have pointed it at a closed port
 }
 

@@ -97,10 +97,9 @@ ArmJoints arm_joints(const sensor_msgs::JointState& message) {
     const auto at = static_cast<std::size_t>(found - message.name.begin());
     if (at < message.position.size()) part.position[static_cast<Eigen::Index>(joint)] = message.position[at];
   }
-  if (part.count != kArm || message.position.size() != message.name.size()) {
+  if (part.count != kArm || message.position.size() != message.name.size())
     part.malformed = fmt::format("{} of the left arm's seven joints, {} names and {} positions", part.count,
                                  message.name.size(), message.position.size());
-  }
   return part;
 }
 
@@ -205,9 +204,8 @@ class RosRobot final : public RosConnection {
     } catch (const ros::Exception& exception) {
       throw robot_error(kSolverService, std::string("its answer cannot be read: ") + exception.what());
     }
-    if (response.isValid.size() != 1 || response.joints.size() != 1 || response.result_type.size() != 1) {
+    if (response.isValid.size() != 1 || response.joints.size() != 1 || response.result_type.size() != 1)
       throw robot_error(kSolverService, "its answer has not one part for one pose");
-    }
     if (response.isValid[0] == 0 || response.result_type[0] == msgs::SolvePositionIKResponse::RESULT_INVALID) return {};
     const ArmJoints part = arm_joints(response.joints[0]);
     if (!part.malformed.empty()) throw robot_error(kSolverService, "its answer has " + part.malformed);
