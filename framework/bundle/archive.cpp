@@ -12,7 +12,7 @@
 #include <array>
 #include <cstdlib>
 #include <locale>
-#include <new>
+#include <memory>
 #include <optional>
 
 #include <nettle/sha2.h>
@@ -33,10 +33,7 @@ constexpr std::size_t kMostFiles = 400'000;
 constexpr std::uintmax_t kMostContent = std::uintmax_t{512} << 20;
 /// Records are compressed about 14 : 1. A larger ratio than this, after the first bytes, is no archive of records.
 constexpr std::uintmax_t kMostRatio = 60;
-constexpr std::uintmax_t kLeastRatio = 4;  ///< larger archives than this allows are not read
 constexpr std::uintmax_t kFreeBytes = std::uintmax_t{16} << 20;
-constexpr int kGzipWindow = 15 + 16;  ///< for zlib: the largest window, and the header of gzip
-constexpr std::size_t kChunk = std::size_t{1} << 16;
 
 Error refused(const std::string& file, const std::string& reason, const std::string& remedy = {}) {
   return {file, reason, remedy.empty() ? "make it again with 'palpate bundle', or ask its author for it" : remedy};
@@ -76,96 +73,48 @@ std::string header_of(const std::string& path, std::uintmax_t size, const std::s
 
 std::string padding_of(std::uintmax_t size) { return std::string((kBlock - size % kBlock) % kBlock, '\0'); }
 
-/// Compresses into a file.
-class GzipWriter {
- public:
-  explicit GzipWriter(const fs::path& file) : out_(file) {
-    constexpr int kMemory = 9;
-    if (deflateInit2(&stream_, Z_BEST_COMPRESSION, Z_DEFLATED, kGzipWindow, kMemory, Z_DEFAULT_STRATEGY) != Z_OK)
-      throw std::bad_alloc();
-    header_.os = 255;  // unknown: the bytes do not depend on the machine
-    deflateSetHeader(&stream_, &header_);
-  }
-  ~GzipWriter() { deflateEnd(&stream_); }
-  GzipWriter(const GzipWriter&) = delete;
-  GzipWriter& operator=(const GzipWriter&) = delete;
-
-  void write(std::string_view bytes) { deflate_all(bytes, Z_NO_FLUSH); }
-  void publish() {
-    deflate_all({}, Z_FINISH);
-    out_.publish();
-  }
-
- private:
-  void deflate_all(std::string_view bytes, int flush) {
-    std::array<char, kChunk> chunk;
-    stream_.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data()));
-    stream_.avail_in = static_cast<uInt>(bytes.size());
-    do {
-      stream_.next_out = reinterpret_cast<Bytef*>(chunk.data());
-      stream_.avail_out = chunk.size();
-      deflate(&stream_, flush);
-      out_.write({chunk.data(), chunk.size() - stream_.avail_out});
-    } while (stream_.avail_out == 0);
-  }
-
-  TemporaryFile out_;
-  z_stream stream_{};
-  gz_header header_{};
+struct CloseGzip {
+  void operator()(gzFile file) const { gzclose(file); }
 };
+using GzipFile = std::unique_ptr<gzFile_s, CloseGzip>;
 
-/// Decompresses a file, which is read as a whole.
+/// Reads a compressed file.
 class GzipReader {
  public:
-  GzipReader(const fs::path& file, std::uintmax_t most_bytes) : name_(file.string()) {
-    FileReading reading = read_bounded(file, most_bytes, FileOrigin::user);
-    if (!reading) throw refused(name_, words_of(reading, most_bytes).reason, "name a bundle: NAME.palpate.tar.gz");
-    bytes_ = std::move(reading.text);
-    if (inflateInit2(&stream_, kGzipWindow) != Z_OK) throw std::bad_alloc();
-    stream_.next_in = reinterpret_cast<Bytef*>(bytes_.data());
-    stream_.avail_in = static_cast<uInt>(bytes_.size());
+  explicit GzipReader(const fs::path& file) : name_(file.string()) {
+    if (!fs::is_regular_file(file)) throw refused(name_, "is not a file", "name a bundle: NAME.palpate.tar.gz");
+    in_.reset(gzopen(file.c_str(), "rb"));
+    if (!in_ || gzdirect(in_.get()) != 0) throw refused(name_, "is not an archive of gzip, or cannot be read");
   }
-  ~GzipReader() { inflateEnd(&stream_); }
-  GzipReader(const GzipReader&) = delete;
-  GzipReader& operator=(const GzipReader&) = delete;
 
+  /// Returns up to `bytes` next bytes.
+  std::string read_some(std::uintmax_t bytes) {
+    std::string out;
+    out.reserve(bytes);  // The number may come from the file; memory is used only as far as the bytes exist.
+    std::array<char, 1 << 16> chunk;
+    for (int got = 1; got > 0 && out.size() < bytes; out.append(chunk.data(), static_cast<std::size_t>(got))) {
+      got = gzread(in_.get(), chunk.data(),
+                   static_cast<unsigned>(std::min<std::uintmax_t>(bytes - out.size(), chunk.size())));
+      if (got < 0) throw refused(name_, "is damaged");
+      const auto unpacked = static_cast<std::uintmax_t>(gztell(in_.get()));
+      if (unpacked > kFreeBytes && unpacked / kMostRatio > static_cast<std::uintmax_t>(gzoffset(in_.get())))
+        throw refused(name_, fmt::format("is compressed by more than {} : 1, so it holds no records", kMostRatio));
+    }
+    int status = Z_OK;
+    gzerror(in_.get(), &status);
+    if (status == Z_BUF_ERROR) throw refused(name_, "ends too early");
+    return out;
+  }
   /// Returns the next `bytes` bytes. Throws Error if there are fewer.
   std::string read(std::uintmax_t bytes) {
-    std::string out;
-    out.reserve(bytes);  // The size comes from the file; memory is used only as far as the bytes exist.
-    std::array<char, kChunk> chunk;
-    while (out.size() < bytes) {
-      const std::size_t got = read_some(chunk.data(), std::min<std::uintmax_t>(bytes - out.size(), kChunk));
-      if (got == 0) throw refused(name_, "ends too early");
-      out.append(chunk.data(), got);
-    }
+    std::string out = read_some(bytes);
+    if (out.size() < bytes) throw refused(name_, "ends too early");
     return out;
   }
 
-  /// Returns whether nothing follows, neither in the compressed data nor behind them.
-  bool at_end() {
-    char one = 0;
-    return read_some(&one, 1) == 0 && stream_.avail_in == 0;
-  }
-
  private:
-  std::size_t read_some(char* to, std::size_t bytes) {
-    stream_.next_out = reinterpret_cast<Bytef*>(to);
-    stream_.avail_out = static_cast<uInt>(bytes);
-    while (stream_.avail_out == bytes && !ended_) {
-      const int status = inflate(&stream_, Z_NO_FLUSH);
-      ended_ = status == Z_STREAM_END;
-      if (!ended_ && status != Z_OK) throw refused(name_, "is not an archive of gzip, or is damaged");
-      if (stream_.total_out > kFreeBytes && stream_.total_out / kMostRatio > stream_.total_in)
-        throw refused(name_, fmt::format("is compressed by more than {} : 1, so it holds no records", kMostRatio));
-    }
-    return bytes - stream_.avail_out;
-  }
-
   std::string name_;
-  std::string bytes_;
-  z_stream stream_{};
-  bool ended_ = false;
+  GzipFile in_;
 };
 
 /// Returns the text in a field of a header, which ends at its first zero.
@@ -233,22 +182,28 @@ void check_archived_name(const std::string& name, const std::string& file) {
 
 void write_archive(const fs::path& file, const std::string& folder, const ArchivedFiles& files) {
   KnownNames known;
-  GzipWriter out(file);
+  TemporaryFile temporary(file);
+  GzipFile out(gzopen(temporary.path().c_str(), "wb9"));
+  const auto write = [&](const std::string& bytes) {
+    if (!out || gzfwrite(bytes.data(), 1, bytes.size(), out.get()) < bytes.size())
+      throw Error(file.string(), "cannot be written", {}, Error::Kind::run);
+  };
   for (const auto& [name, content] : files) {
     check_archived_name(name, file.string());
     known.add(name, file.string());
-    out.write(header_of(folder + "/" + name, content.size(), file.string()));
-    out.write(content);
-    out.write(padding_of(content.size()));
+    write(header_of(folder + "/" + name, content.size(), file.string()));
+    write(content);
+    write(padding_of(content.size()));
   }
-  out.write(std::string(2 * kBlock, '\0'));
-  out.publish();
+  write(std::string(2 * kBlock, '\0'));
+  if (gzclose(out.release()) != Z_OK) throw Error(file.string(), "cannot be written", {}, Error::Kind::run);
+  temporary.publish();
 }
 
 void read_archive(const fs::path& file, std::uintmax_t most_bytes,
                   const std::function<void(const std::string& name, const std::string& content)>& use) {
   const std::string place = file.string();
-  GzipReader in(file, most_bytes / kLeastRatio);
+  GzipReader in(file);
   KnownNames known;
   std::optional<std::string> folder;
   std::uintmax_t bytes = 0;
@@ -277,7 +232,7 @@ void read_archive(const fs::path& file, std::uintmax_t most_bytes,
     if (in.read(padding_of(size).size()) != padding_of(size)) throw refused(place, "has data between its files");
     use(name, content);
   }
-  if (in.read(kBlock) != std::string(kBlock, '\0') || !in.at_end())
+  if (in.read(kBlock) != std::string(kBlock, '\0') || !in.read_some(1).empty())
     throw refused(place, "has data behind its last file");
 }
 

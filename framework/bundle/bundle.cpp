@@ -11,10 +11,13 @@
 #include <palpate/error.hpp>
 
 #include <fmt/format.h>
+#include <boost/algorithm/string/predicate.hpp>
 
 #include <algorithm>
+#include <iomanip>
 #include <memory>
 #include <optional>
+#include <set>
 #include <sstream>
 #include <utility>
 
@@ -24,33 +27,16 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr const char* kIndex = "bundle.json";
 constexpr const char* kReadme = "README.md";
 constexpr std::uintmax_t kMostSourceBytes = std::uintmax_t{64} << 20;
 constexpr const char* kManifest = "manifest.jsonl";
 
 std::string name_only(const std::string& path) { return fs::path(path).filename().string(); }
 
-Tree list_of_texts(const std::vector<std::string>& texts) {
-  Tree out = Tree::list();
-  for (const std::string& one : texts) out.items.push_back(Tree::quote(one));
-  return out;
-}
-
-std::vector<std::string> texts_in(const Tree& list) {
-  std::vector<std::string> out;
-  for (const Tree& one : list.items) out.push_back(one.text);
-  return out;
-}
-
 /// Returns the text at a key of a manifest; "" if there is none.
 std::string text_at(const Tree& tree, const char* key) {
   const Tree* found = tree.find(key);
   return found != nullptr ? found->text : "";
-}
-
-bool is_record(const std::string& name) {
-  return (name.rfind("records/", 0) == 0 || name.rfind("sweeps/", 0) == 0) && name_only(name) == kRecordFile;
 }
 
 /// Removes the values that change no result of a run.
@@ -79,54 +65,51 @@ std::string words_text(const CommandWords& words) {
   return out;
 }
 
-std::string index_text(const BundleIndex& index) {
-  Tree results = Tree::list();
-  for (const CommandWords& one : index.results) results.items.push_back(list_of_texts(one));
-  return to_json(Tree::map({{"bundle", Tree::scalar("1")},
-                            {"name", Tree::quote(index.name)},
-                            {"version", Tree::quote(index.version)},
-                            {"commit", Tree::quote(index.commit)},
-                            {"records", list_of_texts(index.records)},
-                            {"results", results}})) +
-         "\n";
+CommandWords words_of(const std::string& text) {
+  CommandWords out;
+  std::istringstream in(text);
+  for (std::string word; in >> std::quoted(word);) out.push_back(word);
+  return out;
 }
 
-BundleIndex read_index(const fs::path& folder) {
-  const fs::path file = folder / kIndex;
-  const Tree tree = read_json(file);
-  for (const char* const key : {"name", "records", "results"}) {
-    if (tree.find(key) == nullptr)
-      throw Error(file.string(), fmt::format("has no '{}'", key), "the bundle is damaged, or no bundle of palpate");
+BundleIndex index_of(const std::map<std::string, std::string>& files,
+                     const std::function<std::string(const std::string& name)>& read) {
+  BundleIndex out;
+  for (const auto& [name, hash] : files) {
+    const bool is_sweep = boost::starts_with(name, "sweeps/") && name_only(name) == kManifest;
+    const bool is_run = boost::starts_with(name, "records/") && name_only(name) == kRecordFile;
+    if (is_sweep || is_run) out.records.push_back(fs::path(name).parent_path().string());
   }
-  if (text_at(tree, "bundle") != "1")
-    throw Error(file.string(), "has a format that this palpate does not know", "use the palpate that made the bundle");
-  BundleIndex out{
-      text_at(tree, "name"), texts_in(*tree.find("records")), {}, text_at(tree, "version"), text_at(tree, "commit")};
-  for (const Tree& one : tree.find("results")->items) out.results.push_back(texts_in(one));
+  std::sort(out.records.begin(), out.records.end());
+  const auto command = [&] { return fmt::format("results/{}/{}", out.commands.size() + 1, kCommandFile); };
+  while (files.count(command()) > 0) out.commands.push_back(words_of(read(command())));
   return out;
 }
 
 std::string readme_text(const BundleIndex& index) {
-  std::string out = fmt::format(
-      "# {0}\n\n"
-      "This archive holds experiments in active touch, made with palpate {1} (commit {2}), and the results that were\n"
-      "computed from them. With palpate installed, this command makes every run, table and figure again and "
-      "compares:\n\n"
-      "    palpate verify {0}.palpate.tar.gz\n\n"
-      "`palpate rerun {0}.palpate.tar.gz ID` opens one run. Without palpate, `sha256sum -c SHA256SUMS` checks the "
-      "files.\n"
-      "The digest of the bundle is the SHA-256 of SHA256SUMS.\n\n"
-      "| folder | content |\n|---|---|\n",
-      index.name, index.version, index.commit.empty() ? "unknown" : index.commit);
-  for (const std::string& one : index.records)
-    out += fmt::format("| {} | {} |\n", one,
-                       one.rfind("sweeps/", 0) == 0 ? "a sweep: one run per folder of jobs/" : "a run");
-  for (std::size_t i = 0; i < index.results.size(); ++i)
-    out += fmt::format("| results/{} | `palpate {}` |\n", i + 1, words_text(index.results[i]));
+  std::string out =
+      "# Experiments in active touch\n\n"
+      "This archive holds runs of palpate, and results that were computed from them. With palpate installed, this "
+      "command\n"
+      "makes every run, table and figure again and compares the numbers:\n\n"
+      "    palpate verify FILE.palpate.tar.gz\n\n"
+      "`palpate rerun FILE.palpate.tar.gz ID` makes one run again, to look at. Without palpate, `sha256sum -c "
+      "SHA256SUMS`\n"
+      "checks the files. The digest of the bundle, which a paper can print, is the output of `sha256sum "
+      "SHA256SUMS`.\n\n"
+      "| folder | content |\n|---|---|\n";
+  for (const std::string& one : index.records) {
+    const bool is_run = boost::starts_with(one, "records/");
+    out += fmt::format("| {} | {} |\n", one, is_run ? "a run" : "a sweep: one run per folder of `jobs`");
+  }
+  for (std::size_t i = 0; i < index.commands.size(); ++i)
+    out += fmt::format("| results/{} | output of `palpate {}` |\n", i + 1, words_text(index.commands[i]));
   return out +
-         "\nEach run has config.yaml, every option with its value, unit and origin, and record.jsonl, one JSON object "
-         "per\n"
-         "tap. `files` holds what configs name, such as meshes; `sources` holds code that palpate does not contain.\n\n"
+         "\nEach run has `config.yaml`, every option with its value and unit, and `record.jsonl`, one JSON object per "
+         "line.\n"
+         "The first line of a record names version and commit of palpate. `files` holds what configs name, such as "
+         "meshes;\n"
+         "`sources` holds code that palpate does not contain.\n\n"
          "Please cite palpate and the paper of its method: Z. Sun and C. Min, Active tapping via Gaussian process for\n"
          "efficient unknown object surface reconstruction, 2021, arXiv:2110.09593.\n";
 }
@@ -135,12 +118,6 @@ std::string sums_text(const std::map<std::string, std::string>& hashes) {
   std::string out;
   for (const auto& [name, hash] : hashes) out += fmt::format("{}  {}\n", hash, name);
   return out;
-}
-
-void set_version(BundleIndex& index, const std::string& record, const fs::path& file) {
-  const Tree manifest = parse_json(record.substr(0, record.find('\n')), file);
-  index.version = text_at(manifest, "version");
-  index.commit = text_at(manifest, "commit");
 }
 
 void make_portable(Tree& line) {
@@ -217,7 +194,6 @@ std::string BundleCollector::add(const fs::path& directory) {
   const RunIdentity run = read_identity(directory);
   const std::string name = fmt::format("records/{}/{}", slug(run.name), run.identity.substr(0, kIdLength));
   add_run(directory, name);
-  records_.push_back(name);
   return name;
 }
 
@@ -317,17 +293,12 @@ std::string BundleCollector::add_sweep(const Sweep& sweep) {
     files_[file.rfind("jobs/", 0) == 0 ? name + "/" + file : file] = std::move(content);
   files_[name + "/config.yaml"] = portable_sweep_config(std::move(config));
   files_[name + "/" + kManifest] = manifest_text(sweep, id);
-  records_.push_back(name);
   return name;
 }
 
-ArchivedFiles BundleCollector::finish(BundleIndex index) {
-  std::sort(records_.begin(), records_.end());
-  index.records = std::move(records_);
-  const auto first = std::find_if(files_.begin(), files_.end(), [](const auto& one) { return is_record(one.first); });
-  if (first != files_.end()) set_version(index, first->second, first->first);
-  files_[kIndex] = index_text(index);
-  files_[kReadme] = readme_text(index);
+ArchivedFiles BundleCollector::finish() {
+  const auto read = [&](const std::string& name) { return files_.at(name); };
+  files_[kReadme] = readme_text(index_of(files_, read));
   std::map<std::string, std::string> hashes;
   for (const auto& [name, content] : files_) hashes[name] = sha256_of(content);
   files_[kSumsFile] = sums_text(hashes);
@@ -345,24 +316,26 @@ UnpackedBundle::UnpackedBundle(const fs::path& file, std::uintmax_t most_bytes) 
     }
   });
   digest_ = sha256_of(sums_);
+  index_ = index_of(hashes_, [&](const std::string& name) { return read(name); });
 }
 
 std::vector<std::string> UnpackedBundle::wrong_sums() const {
+  const auto lines_of = [](const std::string& text) {
+    std::set<std::string> out;
+    std::istringstream lines(text);
+    for (std::string line; std::getline(lines, line);) out.insert(line);
+    return out;
+  };
+  const std::string expected = sums_text(hashes_);
+  if (sums_ == expected) return {};
   std::vector<std::string> out;
-  if (sums_ == sums_text(hashes_)) return out;
-  std::map<std::string, std::string> listed;
-  std::istringstream lines(sums_);
-  constexpr std::size_t kHash = 64;
-  for (std::string line; std::getline(lines, line);) {
-    if (line.size() > kHash + 2) listed[line.substr(kHash + 2)] = line.substr(0, kHash);
+  const std::set<std::string> listed = lines_of(sums_);
+  const std::set<std::string> found = lines_of(expected);
+  for (const std::string& one : listed) {
+    if (found.count(one) == 0) out.push_back("SHA256SUMS lists, but no file has: " + one);
   }
-  for (const auto& [name, hash] : hashes_) {
-    const auto at = listed.find(name);
-    if (at == listed.end()) out.push_back(name + " is not in SHA256SUMS");
-    if (at != listed.end() && at->second != hash) out.push_back(name + " differs from its hash in SHA256SUMS");
-  }
-  for (const auto& [name, hash] : listed) {
-    if (hashes_.count(name) == 0) out.push_back(name + " is missing");
+  for (const std::string& one : found) {
+    if (listed.count(one) == 0) out.push_back("SHA256SUMS does not list: " + one);
   }
   if (out.empty()) out.emplace_back("SHA256SUMS is not as 'palpate bundle' writes it");
   return out;

@@ -5,12 +5,11 @@
 // |---|---|
 // | README.md | one page for the reader |
 // | SHA256SUMS | hashes of all other files, for `sha256sum -c` |
-// | bundle.json | the list of records, and the command of each result |
 // | records/NAME/ID/ | config.yaml and record.jsonl of a run |
 // | sweeps/NAME/ID/ | config.yaml and manifest.jsonl of a sweep; in jobs/ID/ the files of its runs |
 // | files/HASH.EXT | a file that configs name, such as a mesh |
 // | sources/NAME/ | sources of plugins and programs that palpate does not contain |
-// | results/N/ | output of the command number N, from 1 |
+// | results/N/ | `command`: words of a command of palpate, without its records; and its output |
 //
 // Paths and names of the machine stay out. Values that change no result of a run are left out: `log`, `expect` and the
 // number of threads. All tables that follow from the records are left out, too.
@@ -23,6 +22,7 @@
 #include "sweep/sweep.hpp"
 
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <string>
 #include <string_view>
@@ -31,26 +31,26 @@
 namespace palpate {
 
 inline constexpr const char* kSumsFile = "SHA256SUMS";
+inline constexpr const char* kCommandFile = "command";  ///< in results/N
 
 /// Words of a command after `palpate`, without the records.
 using CommandWords = std::vector<std::string>;
+/// Splits a text at blanks. Words with blanks are in "double quotes".
+CommandWords words_of(const std::string& text);
 /// Returns the words as one text, with quotes around words that contain blanks.
 std::string words_text(const CommandWords& words);
 
-/// Content of bundle.json.
+/// The records and results of a bundle.
 struct BundleIndex {
-  std::string name;
-  std::vector<std::string> records;  ///< folders of runs and sweeps, sorted
-  std::vector<CommandWords> results;
-  std::string version;  ///< version and commit of the program that made the first run
-  std::string commit;
+  std::vector<std::string> records;    ///< folders of runs and sweeps, sorted
+  std::vector<CommandWords> commands;  ///< of results/1, results/2, ...
 };
 
-std::string index_text(const BundleIndex& index);
-/// Reads bundle.json in `folder`. Throws Error.
-BundleIndex read_index(const std::filesystem::path& folder);
-/// Sets version and commit from the text of the record `file`: the first record of the bundle.
-void set_version(BundleIndex& index, const std::string& record, const std::filesystem::path& file);
+/// Finds the records and results among the files of a bundle. `read`: returns the content of a file.
+BundleIndex index_of(const std::map<std::string, std::string>& files,
+                     const std::function<std::string(const std::string& name)>& read);
+
+/// Returns the text of README.md.
 std::string readme_text(const BundleIndex& index);
 
 /// Returns the text of SHA256SUMS from the hashes of all other files.
@@ -81,8 +81,8 @@ class BundleCollector {
   std::string add(const std::filesystem::path& directory);
   void add_file(const std::string& name, std::string content) { files_[name] = std::move(content); }
 
-  /// Returns all files of the bundle. The name and the results of `index` must be set.
-  ArchivedFiles finish(BundleIndex index);
+  /// Returns all files of the bundle.
+  ArchivedFiles finish();
 
  private:
   void add_run(const std::filesystem::path& directory, const std::string& prefix);
@@ -99,7 +99,6 @@ class BundleCollector {
   const RunEnvironment& environment_;
   std::map<std::filesystem::path, std::string> sources_;  ///< names of the folders in the bundle
   std::map<std::string, std::string> named_files_;        ///< names in the bundle, by paths on this machine
-  std::vector<std::string> records_;
   ArchivedFiles files_;
 };
 
@@ -115,7 +114,11 @@ class UnpackedBundle {
   /// Hash of SHA256SUMS, which a paper can print: 64 hex digits.
   const std::string& digest() const { return digest_; }
 
-  /// Returns one line for each file whose content differs from SHA256SUMS, that it lacks, or that is missing.
+  const BundleIndex& index() const { return index_; }
+  /// Returns the content of a file. Throws Error.
+  std::string read(const std::string& name) const { return read_file(folder() / name); }
+
+  /// Returns one line for each difference between the files and SHA256SUMS.
   std::vector<std::string> wrong_sums() const;
 
  private:
@@ -123,6 +126,7 @@ class UnpackedBundle {
   std::map<std::string, std::string> hashes_;
   std::string sums_;
   std::string digest_;
+  BundleIndex index_;
 };
 
 }  // namespace palpate

@@ -31,6 +31,9 @@ struct RunCheck {
 /// equal.
 inline constexpr double kNumberTolerance = 1e-6;
 
+/// Returns whether two texts differ: as numbers by more than kNumberTolerance, or else at all.
+bool differ(const std::string& recorded, const std::string& now);
+
 /// Appends one line for each value that differs between two rows, with `place` at its beginning. Values that depend on
 /// the machine are not compared. With `exact`, all numbers must be equal.
 void compare_rows(const Row& recorded, const Row& now, const std::string& place, bool exact,
@@ -49,7 +52,7 @@ struct BundleContent {
 };
 
 /// Lists the runs of an unpacked bundle, and checks that every file is what the bundle would contain: jobs of sweeps,
-/// files that configs name, bundle.json, README.md. Content of runs, sources and results is not checked.
-BundleContent check_content(const UnpackedBundle& bundle, const BundleIndex& index);
+/// files that configs name, README.md. Content of runs, sources and results is not checked.
+BundleContent check_content(const UnpackedBundle& bundle);
 
 }  // namespace palpate

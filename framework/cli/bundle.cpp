@@ -38,8 +38,8 @@ std::string name_of(const std::string& output, const fs::path& record) {
 }  // namespace
 
 int bundle(CommandEnvironment& program, const BundleArguments& arguments) {
-  std::vector<CommandWords> results;
-  for (const std::string& one : arguments.results) results.push_back(result_command(one));
+  std::vector<CommandWords> commands;
+  for (const std::string& one : arguments.results) check_result_command(commands.emplace_back(words_of(one)));
   const std::vector<fs::path> found = find_records(arguments.records);
   const std::string name = name_of(arguments.output, fs::absolute(found.front()).lexically_normal());
   check_archived_name(name, arguments.output.empty() ? found.front().string() : arguments.output);
@@ -51,11 +51,13 @@ int bundle(CommandEnvironment& program, const BundleArguments& arguments) {
   std::vector<fs::path> directories;
   for (const auto& [folder, directory] : records) directories.push_back(directory);
   const ScratchFolder scratch;
-  for (std::size_t i = 0; i < results.size(); ++i) {
-    for (auto& [file, content] : result_files(program, results[i], directories, scratch.path()))
-      collector.add_file(fmt::format("results/{}/{}", i + 1, file), std::move(content));
+  for (std::size_t i = 0; i < commands.size(); ++i) {
+    auto [file, content] = result_of(program, commands[i], directories, scratch.path());
+    const std::string folder = fmt::format("results/{}/", i + 1);
+    collector.add_file(folder + file, std::move(content));
+    collector.add_file(folder + kCommandFile, words_text(commands[i]) + "\n");
   }
-  const ArchivedFiles files = collector.finish({name, {}, results, {}, {}});
+  const ArchivedFiles files = collector.finish();
   write_archive(output, name, files);
   print_out("{}: {} files\ndigest: {}\n", output.string(), files.size(), sha256_of(files.at(kSumsFile)));
   return kDone;

@@ -12,9 +12,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <iomanip>
-#include <locale>
 #include <memory>
 #include <sstream>
 
@@ -55,16 +52,9 @@ std::string output_of(const CommandEnvironment& program, const CommandWords& wor
   return read_file(file);
 }
 
-/// Returns the value of --format; "" without it.
-std::string format_of(const CommandWords& words) {
-  const auto option = std::find(words.begin(), words.end(), "--format");
-  return option != words.end() && option + 1 != words.end() ? *(option + 1) : "";
-}
-
-bool is_number(const std::string& text, double& value) {
-  std::istringstream in(text);
-  in.imbue(std::locale::classic());
-  return in >> value && in.eof();
+CommandWords more(CommandWords words, const CommandWords& others) {
+  words.insert(words.end(), others.begin(), others.end());
+  return words;
 }
 
 std::vector<std::string> cells_of(const std::string& line) {
@@ -74,45 +64,29 @@ std::vector<std::string> cells_of(const std::string& line) {
   return out;
 }
 
-bool are_equal(const std::string& a, const std::string& b) {
-  double first = 0.0;
-  double second = 0.0;
-  return a == b || (is_number(a, first) && is_number(b, second) &&
-                    std::abs(first - second) <= kNumberTolerance * std::max(std::abs(first), std::abs(second)));
-}
-
 }  // namespace
 
-CommandWords result_command(const std::string& text) {
-  CommandWords out;
-  std::istringstream in(text);
-  for (std::string word; in >> std::quoted(word);) out.push_back(word);
-  if (out.empty() || (out[0] != "compare" && out[0] != "pareto" && out[0] != "curves"))
-    throw Error("command line", "--result " + text + ": is not compare, pareto or curves",
+void check_result_command(const CommandWords& command) {
+  const std::string name = command.empty() ? "" : command.front();
+  if (name != "compare" && name != "pareto" && name != "curves")
+    throw Error("command line", "--result: '" + name + "' is not compare, pareto or curves",
                 "write for example --result \"compare --by acquisition --metric rmse_m\"");
-  if (std::count(out.begin(), out.end(), "-o") > 0)
-    throw Error("command line", "--result " + text + ": -o is chosen by the bundle", "leave it out");
-  return out;
+  for (const char* const option : {"-o", "--format"}) {
+    if (std::count(command.begin(), command.end(), option) > 0)
+      throw Error("command line", fmt::format("--result: the bundle sets {} itself", option), "leave it out");
+  }
 }
 
-std::map<std::string, std::string> result_files(const CommandEnvironment& program, const CommandWords& command,
-                                                const std::vector<fs::path>& records, const fs::path& scratch) {
-  CommandWords words = command;
-  for (std::size_t i = 0; i < records.size(); ++i)
-    words.insert(words.begin() + 1 + static_cast<std::ptrdiff_t>(i), records[i].string());
-  if (command[0] == "curves") {
-    const fs::path table = scratch / "curves.csv";
-    words.insert(words.end(), {"-o", table.string()});
-    output_of(program, words, scratch);
-    return {{"curves.csv", read_file(table)}};
-  }
-  const bool is_table = command[0] == "compare" && format_of(command).empty();
-  if (is_table) words.insert(words.end(), {"--format", "csv"});
-  std::string ending = is_table ? "csv" : format_of(command);
-  if (ending.empty() || ending == "text") ending = "txt";
-  if (ending == "latex") ending = "tex";
-  if (ending == "markdown") ending = "md";
-  return {{"table." + ending, output_of(program, words, scratch)}};
+std::pair<std::string, std::string> result_of(const CommandEnvironment& program, const CommandWords& command,
+                                              const std::vector<fs::path>& records, const fs::path& scratch) {
+  CommandWords words{command.front()};
+  for (const fs::path& record : records) words.push_back(record.string());
+  words.insert(words.end(), command.begin() + 1, command.end());
+  if (command.front() == "pareto") return {"table.txt", output_of(program, words, scratch)};
+  if (command.front() == "compare") return {"table.csv", output_of(program, more(words, {"--format", "csv"}), scratch)};
+  const fs::path table = scratch / "curves.csv";
+  output_of(program, more(words, {"-o", table.string()}), scratch);
+  return {"curves.csv", read_file(table)};
 }
 
 std::vector<std::string> compare_outputs(const std::string& recorded, const std::string& now, const std::string& name,
@@ -128,7 +102,8 @@ std::vector<std::string> compare_outputs(const std::string& recorded, const std:
     if (a == b && has_a == has_b) continue;
     const std::vector<std::string> first = cells_of(a);
     const std::vector<std::string> second = cells_of(b);
-    if (exact || has_a != has_b || !std::equal(first.begin(), first.end(), second.begin(), second.end(), are_equal))
+    const auto equal = [](const std::string& x, const std::string& y) { return !differ(x, y); };
+    if (exact || has_a != has_b || !std::equal(first.begin(), first.end(), second.begin(), second.end(), equal))
       out.push_back(fmt::format("{}:{}: recorded '{}', now '{}'", name, number, a, b));
   }
 }

@@ -21,6 +21,7 @@
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <set>
 #include <sstream>
 
 namespace palpate::cli {
@@ -108,36 +109,33 @@ bool check_runs(const CommandEnvironment& program, const VerifyArguments& argume
 }
 
 /// Makes each result again and compares it.
-void check_results(const CommandEnvironment& program, const UnpackedBundle& bundle, const BundleIndex& index,
-                   Findings& findings) {
+void check_results(const CommandEnvironment& program, const UnpackedBundle& bundle, Findings& findings) {
   const ScratchFolder scratch;
   std::vector<fs::path> records;
-  for (const std::string& one : index.records) records.push_back(bundle.folder() / one);
+  for (const std::string& one : bundle.index().records) records.push_back(bundle.folder() / one);
+  std::set<std::string> expected;
   std::size_t equal = 0;
-  for (std::size_t i = 0; i < index.results.size(); ++i) {
-    const std::string folder = fmt::format("results/{}/", i + 1);
+  const std::vector<CommandWords>& commands = bundle.index().commands;
+  for (std::size_t i = 0; i < commands.size(); ++i) {
     std::vector<std::string> differences;
+    const std::string folder = fmt::format("results/{}/", i + 1);
     const auto trouble = catch_error([&] {
-      const auto made = result_files(program, result_command(words_text(index.results[i])), records, scratch.path());
-      for (const auto& [name, content] : made) {
-        if (bundle.hashes().count(folder + name) == 0) {
-          differences.push_back(folder + name + " is missing");
-          continue;
-        }
-        const auto lines =
-            compare_outputs(read_file(bundle.folder() / (folder + name)), content, folder + name, findings.same_build);
-        differences.insert(differences.end(), lines.begin(), lines.end());
-      }
-      for (const auto& [name, hash] : bundle.hashes()) {
-        if (boost::starts_with(name, folder) && made.count(name.substr(folder.size())) == 0)
-          differences.push_back(name + " does not belong to the bundle");
-      }
+      check_result_command(commands[i]);
+      const auto [file, content] = result_of(program, commands[i], records, scratch.path());
+      differences = compare_outputs(bundle.read(folder + file), content, folder + file, findings.same_build);
+      if (bundle.read(folder + kCommandFile) != words_text(commands[i]) + "\n")
+        differences.push_back(folder + kCommandFile + " is not as 'palpate bundle' writes it");
+      expected.insert({folder + file, folder + kCommandFile});
     });
     if (trouble) differences.emplace_back(trouble->what());
     equal += differences.empty() ? 1 : 0;
     findings.add("", differences);
   }
-  if (!index.results.empty()) print_out("results: {} of {} are equal\n", equal, index.results.size());
+  for (const auto& [name, hash] : bundle.hashes()) {
+    if (boost::starts_with(name, "results/") && expected.count(name) == 0)
+      findings.add("", {name + " does not belong to the bundle"});
+  }
+  if (!commands.empty()) print_out("results: {} of {} are equal\n", equal, commands.size());
 }
 
 }  // namespace
@@ -150,12 +148,11 @@ int verify(CommandEnvironment& program, const VerifyArguments& arguments) {
   const bool sums_match = findings.differences.empty();
   if (sums_match) {
     print_out("files: {}, all as in SHA256SUMS\n", bundle.hashes().size());
-    const BundleIndex index = read_index(bundle.folder());
     const BundlePlugins plugins(program, bundle, arguments.with_plugins);
-    const BundleContent content = check_content(bundle, index);
+    const BundleContent content = check_content(bundle);
     findings.add("", content.differences);
     if (!check_runs(plugins.program(), arguments, bundle, content.runs, findings)) return kInterrupted;
-    check_results(plugins.program(), bundle, index, findings);
+    check_results(plugins.program(), bundle, findings);
   }
   for (const auto& [reason, count] : findings.not_repeated)
     print_out("not repeated: {}, because {}\n", counted(count, "run"), reason);

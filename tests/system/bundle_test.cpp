@@ -269,8 +269,7 @@ TEST_F(Bundle, RefusesWhatItCannotPack) {
   write("text.palpate.tar.gz", "no archive");
   EXPECT_THAT(refused({"verify", "text.palpate.tar.gz"}), HasSubstr("is not an archive of gzip"));
   write_archive(here() / "other.palpate.tar.gz", "other",
-                {{"bundle.json", "{}"}, {kSumsFile, sums_text({{"bundle.json", sha256_of("{}")}})}});
-  EXPECT_THAT(palpate({"verify", "other.palpate.tar.gz"}).err, HasSubstr("has no 'name'"));
+                XX
 }
 
 }  // namespace
