@@ -2,7 +2,7 @@
 # palpate_report: evaluation of runs and sweeps: statistics, tables, pages, figures, texts.
 add_library(palpate_report STATIC
   analysis/statistics.cpp analysis/bootstrap.cpp analysis/signed_rank.cpp analysis/column.cpp analysis/groups.cpp analysis/mean_output.cpp analysis/table.cpp
-  analysis/sweep_table.cpp analysis/runs_table.cpp analysis/pareto.cpp analysis/pareto_report.cpp analysis/compare.cpp
+  analysis/sweep_table.cpp analysis/runs_table.cpp analysis/pareto.cpp analysis/pareto_report.cpp analysis/compare.cpp analysis/compare_plan.cpp
   analysis/compare_report.cpp analysis/means_table.cpp analysis/group_curves.cpp analysis/group_curves_report.cpp
   analysis/gnuplot.cpp analysis/importance.cpp
   tune/description.cpp tune/search_space.cpp tune/elimination.cpp tune/race.cpp tune/planner.cpp tune/tuner.cpp

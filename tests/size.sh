@@ -15,10 +15,11 @@ ceilings='
 .ci 0 131
 . 0 199
 framework 0 163 # tune; one file of CMake per library
-framework/analysis 3277 0 # power and importance; tables by one model
+framework/analysis 3390 0 # planned comparisons; power and importance; tables by one model
 framework/belief 2115 0 # beliefs by an interface
+framework/bundle 890 0 # archives, contents and checks of bundles
 framework/calibrate 548 0
-framework/cli 3980 60 # tune and power; one file per command, with its arguments
+framework/cli 4560 63 # bundle, verify and rerun; planned comparisons; tune and power; one file per command, with its arguments
 framework/cmake 0 220 # packages of a cross build
 framework/config 3155 0
 framework/experiment 1560 0 # initial design and best score in files of their own
@@ -54,12 +55,12 @@ tests/crash 414 434
 tests/fake_baxter 2425 47
 tests/fuzz 380 0
 tests/python 0 1235 # tune; taps from any side by ask and tell
-tests/report 1301 85
+tests/report 1325 85 # planned comparisons
 tests/slurm 540 0 # races, their end and how to stop them
 tests/stability 2435 0
 tests/support 2355 0 # the simulator as a program of the backend process; grids of candidates, which only tests make; races
-tests/sweep 5200 0 # races, power, importance
-tests/system 9680 0 # tune; lines of any direction for programs and records; beliefs
+tests/sweep 5520 0 # archives; planned comparisons, races, power, importance
+tests/system 10060 0 # bundles; planned comparisons; tune; lines of any direction for programs and records; beliefs
 tests/unit 17395 0 # oracles of the footprint: pushes, calibration, enumeration, joint distribution; strategies over other beliefs
 tests/ur_rtde 0 230
 tests/versions 50 17

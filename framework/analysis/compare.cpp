@@ -332,4 +332,14 @@ Comparison compare(const Sweep& sweep, const std::vector<Row>& results, const Co
   return out;
 }
 
+void check_baseline(const Sweep& sweep, const std::vector<std::string>& by, const std::string& baseline) {
+  std::vector<ComparedGroup> groups;
+  std::vector<GroupsWithBaseline> blocks(1);
+  for (const JobGroup& one : group_jobs(sweep, {}, by)) {
+    blocks.front().groups.push_back(groups.size());
+    groups.push_back(summarise({one.values, {}, 0}, true));
+  }
+  choose_baselines(blocks, groups, scene_places(sweep, by), baseline);
+}
+
 }  // namespace palpate

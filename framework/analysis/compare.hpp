@@ -92,7 +92,11 @@ struct Comparison {
   bool ratios = false;  ///< whether ratios were requested
   /// checkpoint at which jobs are compared; nullopt if jobs are compared at their ends
   std::optional<Checkpoint> occasion;
-  int jobs = 0;  ///< number of jobs of the sweep
+  int jobs = 0;                     ///< number of jobs of the sweep
+  std::optional<std::string> plan;  ///< hash of the plan that the sweep's config has: see mark_planned()
+  bool planned = false;             ///< whether this comparison is the planned one
+  /// smallest difference that matters (SI units), if this comparison is planned and decides
+  std::optional<double> difference;
   /// jobs that the condition leaves out, by the status that they would have without the condition
   StatusCounts left_out;
 };
@@ -106,5 +110,9 @@ inline constexpr std::size_t kMostGroupsInPairs = 8;
 /// matching jobs. A metric is unusable if it does not exist, is not a result, holds no numbers, or has no value in any
 /// job.
 Comparison compare(const Sweep& sweep, const std::vector<Row>& results, const CompareQuery& query);
+
+/// Throws Error with the place "command line" unless the groups of the sweep include `baseline`, as CompareQuery has
+/// it.
+void check_baseline(const Sweep& sweep, const std::vector<std::string>& by, const std::string& baseline);
 
 }  // namespace palpate

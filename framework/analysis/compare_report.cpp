@@ -73,6 +73,8 @@ void begin_row(Table& table, const Comparison& comparison, const std::string& wh
   table.store("by", fmt::format("{}", fmt::join(comparison.by, ",")));
   table.store("metric", comparison.metric.name);
   table.store("where", where.empty() ? std::nullopt : std::optional(where));
+  table.store("planned", comparison.planned);
+  table.store("plan", comparison.plan);
   if (const auto& occasion = comparison.occasion)
     occasion->taps() ? table.store("at", *occasion->taps()) : table.store("until", occasion->words());
 }
@@ -163,6 +165,13 @@ void store_test(Table& table, const ComparedPair& pair) {
   table.store("rank_biserial", test.effect);
 }
 
+/// Returns whether the 95 % interval of a difference lies beyond the smallest difference that matters, or within it.
+std::string verdict(const ComparedPair& pair, double least) {
+  const auto& ends = pair.difference.interval;
+  if (ends && (ends->low >= least || ends->high <= -least)) return "larger";
+  return ends && ends->low > -least && ends->high < least ? "smaller" : "not decided";
+}
+
 Table pair_table(const Comparison& comparison, const DisplayScale& scale, const std::string& where) {
   const SignWords words = words_of(comparison.metric);
   Table table;
@@ -178,6 +187,9 @@ Table pair_table(const Comparison& comparison, const DisplayScale& scale, const 
                                            [&](double value) { return scale.difference(value); });
     table.show("mean [95 % interval]", pair.difference.count > 0 ? mean : "-");
     store_estimate(table, comparison, pair.difference);
+    const auto least = comparison.difference;
+    if (least) table.show("verdict", verdict(pair, *least));
+    table.store("verdict", least ? std::optional(verdict(pair, *least)) : std::nullopt);
     std::optional<double> detectable;
     if (pair.spread) detectable = planning_sd(*pair.spread, 0.8) * detectable_effect(pair.difference.clusters, 0.8);
     table.show("detectable", scale.number(detectable));
@@ -354,6 +366,8 @@ std::string compare_legend(const std::vector<Comparison>& comparisons) {
   const std::vector<std::string>& pairing = first.pairing;
   out += pairing.empty() ? "pair: one job of each group.\n"
                          : fmt::format("pair: two jobs with equal {}.\n", keys_text(pairing));
+  if (first.difference)
+    out += "verdict: the interval shows a difference that matters (larger), a smaller one, or neither (not decided).\n";
   if (first.ratios)
     out += fmt::format(
         "ratio: mean of the first group divided by the mean of the second, over the same pairs; its interval resamples "

@@ -14,7 +14,7 @@ void NeededParts::config(const std::string& file, const std::vector<std::string>
     std::vector<Override> read;
     for (const std::string& text : overrides) read.push_back(parse_override(text));
     const Tree tree = program_.composer.compose(file, read);
-    if (sweeps && tree.find("sweep") != nullptr) everything();
+    if (sweeps && (tree.find("sweep") != nullptr || tree.find("compare") != nullptr)) everything();
     resolve_experiment(tree, *this);
   });
 }

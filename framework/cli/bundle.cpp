@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "cli/bundle.hpp"
 
+#include "analysis/compare_plan.hpp"
 #include "bundle/bundle.hpp"
 #include "cli/bundle_results.hpp"
 #include "cli/display.hpp"
@@ -41,6 +42,7 @@ int bundle(CommandEnvironment& program, const BundleArguments& arguments) {
   std::vector<CommandWords> commands;
   for (const std::string& one : arguments.results) check_result_command(commands.emplace_back(words_of(one)));
   const std::vector<fs::path> found = find_records(arguments.records);
+  if (commands.empty() && recorded_plan(found)) commands.push_back({"compare"});
   const std::string name = name_of(arguments.output, fs::absolute(found.front()).lexically_normal());
   check_archived_name(name, arguments.output.empty() ? found.front().string() : arguments.output);
   const fs::path output = arguments.output.empty() ? name + kEnding : arguments.output;

@@ -50,8 +50,8 @@ Argument with_rules(CLI::Option* option, Command::Rules rules) {
 
 }  // namespace
 
-Rule required() {
-  return [](CLI::Option& option) { option.required(); };
+Rule required(bool is_required) {
+  return [=](CLI::Option& option) { option.required(is_required); };
 }
 Rule with_default() {
   return [](CLI::Option& option) { option.capture_default_str(); };

@@ -26,7 +26,7 @@ namespace palpate::cli {
 using Argument = CLI::Option*;
 using Rule = std::function<void(CLI::Option&)>;
 
-Rule required();
+Rule required(bool is_required = true);
 /// Shows the default in the help. The default is the value that the variable has at the declaration.
 Rule with_default();
 Rule at_least(int least);

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include "cli/compare.hpp"
 
+#include "analysis/compare_plan.hpp"
 #include "analysis/compare_report.hpp"
 #include "analysis/importance.hpp"
 #include "cli/display.hpp"
 #include "cli/output.hpp"
 #include "cli/sweep_display.hpp"
+#include "config/catch_error.hpp"
+#include "record/catalogue.hpp"
 #include "record/files.hpp"
 #include "record/json.hpp"
 #include "record/resolved_config.hpp"
@@ -18,6 +21,8 @@
 
 #include <algorithm>
 #include <iterator>
+#include <tuple>
+#include <utility>
 
 namespace palpate::cli {
 namespace {
@@ -103,6 +108,19 @@ std::optional<std::vector<Comparison>> compare_all(const CommandEnvironment& pro
   return comparisons;
 }
 
+/// Selects the comparison of the plan if neither --by nor --metric is given; --where and --baseline are kept if given.
+/// Returns whether the arguments select this comparison. A format without pairs has no baseline.
+bool follow_plan(const ComparePlan& plan, CompareArguments& arguments) {
+  const bool has_pairs = extent_of(arguments) == CompareExtent::pairs;
+  if (arguments.by.empty() && arguments.metrics.empty() && !arguments.importance) {
+    std::tie(arguments.by, arguments.metrics) = std::tie(plan.by, plan.metrics);
+    if (!arguments.where) arguments.where = plan.where;
+    if (!arguments.baseline && has_pairs) arguments.baseline = plan.baseline;
+  }
+  return arguments.by == plan.by && arguments.metrics == plan.metrics && arguments.where == plan.where &&
+         (arguments.baseline == plan.baseline || !has_pairs) && occasions_of(arguments).empty();
+}
+
 /// Prints the importance of the swept keys for each metric.
 int print_importance(const Sweep& sweep, const CompareArguments& arguments) {
   const std::optional<WhereCondition> where = WhereCondition::of_command_line(arguments.where);
@@ -120,14 +138,19 @@ int print_importance(const Sweep& sweep, const CompareArguments& arguments) {
 
 }  // namespace
 
-int compare(CommandEnvironment& program, const CompareArguments& arguments) {
+int compare(CommandEnvironment& program, const CompareArguments& given) {
+  CompareArguments arguments = given;
   extent_of(arguments);
+  const std::optional<ComparePlan> plan = recorded_plan(find_records(arguments.records));
+  const bool is_planned = plan && follow_plan(*plan, arguments);
   if (arguments.by.empty() && !arguments.importance)
     throw Error("", "--by or --importance is required", "see palpate compare --help");
+  if (arguments.metrics.empty()) throw Error("", "--metric is required", "see palpate compare --help");
   const Sweep sweep = read_records(arguments.records, arguments.by);
   if (arguments.importance) return print_importance(sweep, arguments);
-  const auto comparisons = compare_all(program, sweep, arguments);
+  auto comparisons = compare_all(program, sweep, arguments);
   if (!comparisons) return kInterrupted;
+  const std::string planned = mark_planned(*comparisons, plan, is_planned);
   if (arguments.format == "csv" || arguments.format == "json") {
     std::vector<Row> rows;
     for (const Comparison& one : *comparisons) {
@@ -138,11 +161,12 @@ int compare(CommandEnvironment& program, const CompareArguments& arguments) {
     return kDone;
   }
   if (arguments.format != "text") {
+    if (arguments.format == "latex") print_text("% " + planned + "\n");
     print_text(arguments.format == "latex" ? latex_table(*comparisons) : means_table(*comparisons));
     return kDone;
   }
   for (const Comparison& one : *comparisons) print_out("{}\n", compare_tables(one));
-  print_text(compare_legend(*comparisons));
+  print_text(planned + "\n" + compare_legend(*comparisons));
   const std::string condition = arguments.where.value_or("");
   for (const Comparison& one : *comparisons) {
     const fs::path file = table_file(sweep, one, condition);

@@ -17,15 +17,17 @@ struct ComparedArguments {
   std::optional<std::string> baseline;
 };
 
-/// Adds the arguments, and returns --by and --baseline. `by_rules`: rules of --by.
-inline std::pair<Argument, Argument> add_compared(const Command& command, ComparedArguments& query,
-                                                  Command::Rules by_rules) {
+/// Adds the arguments, and returns --by and --baseline. `planned`: whether the plan of a sweep may replace --by and
+/// --metric.
+inline std::pair<Argument, Argument> add_compared(const Command& command, ComparedArguments& query, bool planned) {
   command.pooled_records(query.records);
-  const Argument by = command.argument("--by", query.by, "KEYS",
-                                       "swept keys that define the groups, for example acquisition,kernel", by_rules);
+  const Argument by =
+      command.argument("--by", query.by, "KEYS", "swept keys that define the groups, for example acquisition,kernel",
+                       {comma_separated(), required(!planned)});
   command.argument("--metric", query.metrics, "COLUMNS",
-                   "columns of results.csv to compare, for example object_taps,footprint_iou",
-                   {comma_separated(), required()});
+                   std::string("columns of results.csv to compare, for example object_taps,footprint_iou") +
+                       (planned ? ". Without --by and --metric, the sweep's 'compare:' block is used" : ""),
+                   {comma_separated(), required(!planned)});
   command.argument("--where", query.where, "CONDITION",
                    "compare only jobs that satisfy this condition, for example \"first_hit_tap <= 3\"");
   return {by, command.argument("--baseline", query.baseline, "GROUP",
@@ -49,7 +51,7 @@ inline void add_compare(CommandLine& line) {
       [](NeededParts& needs, const CompareArguments& arguments) {
         arguments.at.empty() && !arguments.until ? needs.whole() : needs.everything();
       });
-  const auto [by, baseline] = add_compared(command, query, {comma_separated()});
+  const auto [by, baseline] = add_compared(command, query, true);
   const Argument at = command.argument("--at", query.at, "NUMBERS",
                                        "numbers of taps after which the jobs are compared, for example 17,30",
                                        {comma_separated(), at_least(1)});

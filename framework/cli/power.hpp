@@ -14,7 +14,7 @@ PALPATE_WHOLE int power(CommandEnvironment& program, const PowerArguments& argum
 
 inline void add_power(CommandLine& line) {
   auto [command, query] = line.add<PowerArguments>("power", "Plan how many seeds a sweep needs", power, kNeedsWhole);
-  add_compared(command, query, {comma_separated(), required()});
+  add_compared(command, query, false);
   command.argument("--difference", query.difference, "VALUE", "difference to detect, for example 1mm", {required()});
   command.argument("--power", query.power, "NUMBER", "probability of detecting it, from 0.5 to 0.99", {with_default()});
   command.examples({"palpate power runs/pilot/* --by acquisition --metric rmse_m --difference 1mm",

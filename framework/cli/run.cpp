@@ -127,11 +127,12 @@ int run(CommandEnvironment& program, const RunArguments& arguments) {
     config = resolve_experiment(composed, program.host);
   });
   if (trouble) throw axis_error(overrides, arguments.overrides, *trouble);
-  for (const char* const block : {"sweep", "tune"}) {
+  for (const auto& [block, use] :
+       {std::pair("sweep", "'palpate sweep' runs all its jobs"), std::pair("tune", "'palpate tune' runs all its jobs"),
+        std::pair("compare", "it plans a comparison of a sweep")}) {
     const Tree* found = composed.find(block);
     if (found == nullptr || arguments.quiet) continue;
-    print_message(fmt::format("{0}: {1}: is ignored by 'palpate run'; 'palpate {1}' runs all its jobs\n",
-                              found->place.text(), block));
+    print_message(fmt::format("{}: {}: is ignored by 'palpate run'; {}\n", found->place.text(), block, use));
   }
   if (arguments.print_config) {
     print_resolved_config(program, arguments, config);

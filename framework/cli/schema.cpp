@@ -12,6 +12,7 @@
 
 #include <map>
 #include <set>
+#include <tuple>
 
 namespace palpate::cli {
 namespace {
@@ -132,6 +133,23 @@ void tune_schema(Tree& tune) {
   properties.at("where") = any_of({of_type("string"), of_type("array")});
 }
 
+/// Fills the schema of `compare:`.
+void compare_schema(Tree& compare) {
+  compare.at("type") = Tree::quote("object");
+  compare.at("additionalProperties") = Tree::scalar("false");
+  compare.at("required") = Tree::list({Tree::quote("metric"), Tree::quote("by"), Tree::quote("seeds")});
+  Tree& properties = compare.at("properties");
+  for (const auto& [name, type, other, meaning] :
+       {std::tuple("metric", "string", "array", "column of results.csv, or a list, of which the first decides"),
+        std::tuple("by", "string", "array", "swept key, or a list of keys, whose values define the groups"),
+        std::tuple("baseline", "string", "number", "group with which the others are compared"),
+        std::tuple("where", "string", "string", "condition on the jobs, as in --where of palpate compare"),
+        std::tuple("seeds", "integer", "integer", "number of seeds of each group"),
+        std::tuple("difference", "string", "number", "smallest difference of the first metric that matters")})
+    properties.at(name) = any_of({of_type(type, meaning), of_type(other)});
+  compare = any_of({of_type("string", "none: no plan"), compare});
+}
+
 struct SchemaArguments {};
 
 int schema(CommandEnvironment& program, const SchemaArguments&) {
@@ -152,6 +170,7 @@ int schema(CommandEnvironment& program, const SchemaArguments&) {
   defaults_schema(properties.at("defaults"));
   sweep_schema(properties.at("sweep"));
   tune_schema(properties.at("tune"));
+  compare_schema(properties.at("compare"));
   expect_schema(properties.at("expect"));
   Tree& definitions = out.at("definitions") = Tree::map();
   for (const std::string& kind : PluginHost::kinds())

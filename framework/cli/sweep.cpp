@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "cli/sweep.hpp"
 
+#include "analysis/compare_plan.hpp"
 #include "analysis/sweep_table.hpp"
 #include "cli/display.hpp"
 #include "cli/gate.hpp"
@@ -126,8 +127,12 @@ std::vector<std::size_t> parse_jobs(const std::string& text, std::size_t count) 
 }  // namespace
 
 std::size_t jobs_of_sweep(CommandEnvironment& program, const std::string& config) {
-  return plan_sweep(program.composer, program.host, config, {}, "runs").sweep.jobs.size();
+  const SweepPlan plan = plan_sweep(program.composer, program.host, config, {}, "runs");
+  if (const auto planned = plan_in(plan.config)) planned->check(plan.sweep);
+  return plan.sweep.jobs.size();
 }
+
+void check_compare(CommandEnvironment&, const Tree& config) { plan_in(config); }
 
 int sweep(CommandEnvironment& program, const SweepArguments& arguments) {
   check_launch(arguments.launch);
@@ -148,6 +153,7 @@ int sweep(CommandEnvironment& program, const SweepArguments& arguments) {
                                                one_at_a_time =
                                                    one_at_a_time || program.host.one_at_a_time(config.notes.plugins);
                                              });
+  if (const auto planned = plan_in(plan->config)) planned->check(plan->sweep);
   const std::string jobs = counted(static_cast<long>(plan->sweep.jobs.size()), "job");
   if (arguments.list) {
     for (const Job& job : plan->sweep.jobs)

@@ -22,6 +22,8 @@ PALPATE_WHOLE int resume_sweep(CommandEnvironment& program, const ResumeArgument
 PALPATE_WHOLE int status_of_sweep(CommandEnvironment& program, const std::string& directory);
 /// Returns the number of jobs of the sweep in the file `config`. Throws Error for an invalid config.
 PALPATE_WHOLE std::size_t jobs_of_sweep(CommandEnvironment& program, const std::string& config);
+/// Checks the block `compare:` of a composed config that has no block `sweep:`. Throws Error.
+PALPATE_WHOLE void check_compare(CommandEnvironment& program, const Tree& config);
 
 inline void add_sweep(CommandLine& line) {
   auto [command, sweep_arguments] =

@@ -33,6 +33,7 @@ int validate(CommandEnvironment& program, const ValidateArguments& arguments) {
         said.emplace_back(
             true, fmt::format("{}: valid, a sweep of {} jobs\n", file, call_in_whole(jobs_of_sweep, program, file)));
       } else {
+        if (tree.find("compare") != nullptr) call_in_whole(check_compare, program, tree);
         const ResolvedConfig config = resolve_experiment(tree, program.host);
         // Broken meshes, and objects that do not fit into the area, are detected only when the scene is built.
         build_scene(config.options.scene, static_cast<std::uint64_t>(config.options.seed), program.host);

@@ -227,7 +227,7 @@ std::vector<Composer::Choice> Composer::take_defaults(Tree& own) const {
 void Composer::take_names(Tree& tree, const std::string& path, std::vector<Choice>& choices) const {
   std::vector<std::string> taken;
   for (Tree::Entry& entry : tree.entries) {
-    if (path.empty() && (entry.key == "sweep" || entry.key == "tune")) continue;
+    if (path.empty() && describes_many_runs(entry.key)) continue;
     const std::string here = path.empty() ? entry.key : path + "." + entry.key;
     if (keys_.is_typed(here) && entry.value.is_scalar()) entry.value = typed(entry.value);
     if (keys_.is_group(here) && entry.value.is_scalar()) {

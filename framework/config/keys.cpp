@@ -6,6 +6,8 @@
 
 namespace palpate {
 
+bool describes_many_runs(const std::string& key) { return key == "sweep" || key == "tune" || key == "compare"; }
+
 std::string first_key(const std::string& path) { return path.substr(0, path.find('.')); }
 std::string last_key(const std::string& path) { return path.substr(path.rfind('.') + 1); }
 

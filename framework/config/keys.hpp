@@ -67,6 +67,9 @@ class ConfigKeys {
   std::vector<std::pair<std::string, std::string>> heirs_;
 };
 
+/// Returns whether a top-level key describes many runs. A resolved config has no such key.
+bool describes_many_runs(const std::string& key);
+
 /// Returns whether a dotted path is `top` or lies within it.
 bool is_at_or_below(const std::string& path, const std::string& top);
 

@@ -266,4 +266,10 @@ std::string suggestion(std::string_view name, const std::vector<std::string>& kn
   return fmt::format("known: {}", fmt::join(known, ", "));
 }
 
+void check_option(const std::string& name, const SourceLocation& place, const std::vector<std::string>& known,
+                  const char* block) {
+  if (!is_one_of(known, name))
+    throw Error(place.text(), fmt::format("unknown option '{}' of {}", name, block), suggestion(name, known));
+}
+
 }  // namespace palpate

@@ -133,4 +133,8 @@ std::string nearest(std::string_view name, const std::vector<std::string>& known
 /// `name`. If no name is similar or contains `name`, returns "known: a, b, c", or "" if `known` is empty.
 std::string suggestion(std::string_view name, const std::vector<std::string>& known);
 
+/// Throws Error, with `place`, unless the block `block` has the option `name`.
+void check_option(const std::string& name, const SourceLocation& place, const std::vector<std::string>& known,
+                  const char* block);
+
 }  // namespace palpate

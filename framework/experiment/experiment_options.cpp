@@ -184,6 +184,7 @@ std::vector<Field> keys_beside_options() {
             "keys and ranges among which 'palpate tune' searches for the best setting, the metric, and the number of "
             "runs")
           .of_run(),
+      Field("compare", "comparison that 'palpate sweep' records before the first run, or none").of_run(),
       Field("expect",
             "expected values of summary fields, for example first_hit_tap: '<= 9'. For a sweep, statistics are "
             "possible, for example median(taps): '<= 17'")

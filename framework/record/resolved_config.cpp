@@ -24,9 +24,7 @@ std::string identity_text(const ResolveNotes& notes) {
 
 ResolvedConfig resolve_experiment(const Tree& composed, const PluginSource& plugins) {
   Tree input = composed;
-  input.erase("sweep");
-  input.erase("tune");
-  input.erase("expect");
+  for (const char* const key : {"sweep", "tune", "compare", "expect"}) input.erase(key);
   ResolvedConfig out;
   if (draws_objects(input)) {
     if (const Tree* seed = input.find("seed")) out.options.seed = read_integer(*seed, "seed");

@@ -29,7 +29,7 @@ HeightMapOptions height_map_options(const ExperimentOptions& options, const Plug
 std::string identity_text(const ResolveNotes& notes);
 
 /// Checks a composed config, loads the plugins that it uses, and returns the resolved config. Ignores the blocks
-/// `sweep:` and `tune:`. Throws Error.
+/// `sweep:`, `tune:` and `compare:`. Throws Error.
 ResolvedConfig resolve_experiment(const Tree& composed, const PluginSource& plugins);
 
 /// Number of hex digits of an id.

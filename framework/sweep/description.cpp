@@ -31,8 +31,7 @@ SourceLocation place_of(const SweepAxis& axis) { return axis.values.front().plac
 
 void check_block(const std::string& name, const SourceLocation& place) {
   static const std::vector<std::string> names{"grid", "zip", "list", "sobol", "where"};
-  if (std::find(names.begin(), names.end(), name) != names.end()) return;
-  throw Error(place.text(), fmt::format("unknown option '{}' of sweep", name), suggestion(name, names));
+  check_option(name, place, names, "sweep");
 }
 
 bool is_empty(const Tree& block) {
@@ -67,6 +66,8 @@ void check_key(const SweepAxis& axis) {
   if (is_below(axis.key, "expect"))
     throw Error(place, fmt::format("{}: expectations cannot be swept", axis.key),
                 "write it under 'expect:', which applies to the whole sweep");
+  if (is_below(axis.key, "compare"))
+    throw Error(place, fmt::format("'{}' cannot be swept", axis.key), "write it under 'compare:'");
   if (is_below(axis.key, "sweep") || axis.key == "defaults")
     throw Error(place, fmt::format("'{}' cannot be swept", axis.key), "list its names, as in kernel: [rbf, matern52]");
 }
@@ -105,6 +106,10 @@ SweepOverrides parse_sweep_words(const std::vector<std::string>& words) {
       const std::string name = path.substr(std::string("sweep.").size());
       check_block(name, block.value.place);
       out.blocks.emplace_back(name, std::move(block.value));
+      continue;
+    }
+    if (is_below(path, "compare")) {
+      out.expectations.push_back(parse_override(word));
       continue;
     }
     SweepAxis axis = parse_axis(word, count);

@@ -18,7 +18,7 @@ namespace palpate {
 struct SweepOverrides {
   std::vector<SweepAxis> axes;                       ///< KEY=VALUES
   std::vector<std::pair<std::string, Tree>> blocks;  ///< sweep.BLOCK=...
-  std::vector<Override> expectations;                ///< `expect...=...`: not swept; apply to the whole sweep
+  std::vector<Override> expectations;  ///< `expect...=...`, `compare...=...`: not swept; apply to the whole sweep
 };
 
 /// Throws Error for invalid words.

@@ -19,15 +19,12 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Returns whether a top-level key describes many runs. A resolved config has no such key.
-bool is_of_many_runs(const std::string& key) { return key == "sweep" || key == "tune"; }
-
 /// Returns the top-level keys in the order of a resolved config.
 std::vector<std::string> ordered_keys(const Tree& base, const Tree& resolved) {
   std::vector<std::string> out;
   for (const Tree* tree : {&resolved, &base}) {
     for (const Tree::Entry& entry : tree->entries) {
-      if (base.find(entry.key) == nullptr || entry.key == "name" || is_of_many_runs(entry.key)) continue;
+      if (base.find(entry.key) == nullptr || entry.key == "name" || describes_many_runs(entry.key)) continue;
       if (std::find(out.begin(), out.end(), entry.key) == out.end()) out.push_back(entry.key);
     }
   }
@@ -125,6 +122,7 @@ SweepPlan plan_sweep(Composer& composer, const PluginHost& host, const fs::path&
   SweepPlan plan{{{}, description.keys(), planner.take_jobs()},
                  written_config(file, base, alone, description.keys(), *first)};
   plan.config.at("sweep") = description.written();
+  if (const Tree* one = base.find("compare"); one != nullptr && one->text != "none") plan.config.at("compare") = *one;
   check_readable(plan.config, file.string());
   plan.sweep.directory = runs / slug(first->options.name) / sweep_id(plan.config, plan.sweep);
   return plan;

@@ -28,9 +28,9 @@ SweepPlan plan_sweep(Composer& composer, const PluginHost& host, const std::file
                      const std::vector<std::string>& words, const std::filesystem::path& runs,
                      const JobSink& sink = nullptr);
 
-/// Returns a config from which the same jobs can be made again, without its block `sweep:` or `tune:`. Keys that the
-/// jobs do not vary are written in full, groups included. Keys that depend on varied groups or types are written as in
-/// `file`, because the options of one choice must not remain with another.
+/// Returns a config from which the same jobs can be made again, without its blocks `sweep:`, `tune:` and `compare:`.
+/// Keys that the jobs do not vary are written in full, groups included. Keys that depend on varied groups or types are
+/// written as in `file`, because the options of one choice must not remain with another.
 ///
 /// `base`: `file` composed without the values of a job. `alone`: `base` resolved, or nullopt if it is incomplete.
 /// `keys`: all keys that the jobs vary. `first`: the first job, which defines the order of the keys.

@@ -28,7 +28,7 @@ const std::vector<std::string> kNames{"keys", "metric", "cost", "jobs", "time", 
 void check_key(const std::string& key, const Tree& value, bool is_searched) {
   const std::string top = first_key(key);
   check_path(key, value.place.text());
-  if (top == "sweep" || top == "tune" || top == "defaults" || top == "expect" || top == "log" || top == "name")
+  if (describes_many_runs(top) || top == "defaults" || top == "expect" || top == "log" || top == "name")
     refuse(value, fmt::format(": '{}' cannot be tuned", key), "name an option of the strategy");
   if (!is_searched) return;
   if (key == "seed")
@@ -91,11 +91,7 @@ std::optional<double> TunedKey::position(const std::string& text) const {
 TuneDescription::TuneDescription(const Tree* config, const TuneWords& words)
     : written(config != nullptr ? *config : Tree::map()) {
   if (!written.is_map()) refuse(written, ": expects a map", "write tune: {keys: {key: [values]}, metric: rmse_m}");
-  for (const Tree::Entry& entry : written.entries) {
-    if (std::find(kNames.begin(), kNames.end(), entry.key) == kNames.end())
-      throw Error(entry.place.text(), fmt::format("unknown option '{}' of tune", entry.key),
-                  suggestion(entry.key, kNames));
-  }
+  for (const Tree::Entry& entry : written.entries) check_option(entry.key, entry.place, kNames, "tune");
   check_given_once(words.keys);
   ValueCount count;
   for (const std::string& word : words.keys) {

@@ -84,6 +84,18 @@ const std::string kFront =
     data_of("front",
             "d[4].x.map((x, i) => [d[4].texttemplate[i], x, d[4].y[i], d[4].error_x.array[i], d[4].error_y.array[i]])");
 
+TEST_P(SweepNumbers, StandBelowASentenceAboutTheirPlan) {
+  const fs::path directory =
+      swept({paper_, "acquisition=weighted,uncertainty", "taps=4", "seed=range(0,2)", "candidates.count=9",
+             "compare.metric=rmse_m", "compare.by=acquisition", "compare.seeds=2"});
+  report(directory);
+  const Browsed seen = browse(directory, {drawn(1), "return document.getElementById('planned').textContent"});
+  ASSERT_EQ(seen.values.size(), 1U);
+  EXPECT_THAT(seen.values.at(0).get<std::string>(),
+              AllOf(StartsWith("Planned before the first run (plan "),
+                    HasSubstr("): rmse_m by acquisition, 2 seeds. Other comparisons ")));
+}
+
 TEST_P(SweepNumbers, PlotsWhatResultsCsvSaysAndFollowsItsControls) {
   const fs::path directory =
       swept({paper_, "acquisition=weighted,uncertainty", "kernel.length_scale=1.7 cm,10 mm,2.5cm", "taps=8,12",

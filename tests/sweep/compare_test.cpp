@@ -324,7 +324,7 @@ TEST(CompareTables, AreOneLineAJobWhateverIsInANames) {
 TEST(CompareRows, HoldTheNumbersOfGroupsAndPairsInSi) {
   const Comparison made = MadeSweep(two_by_two(6)).by({"acquisition"});
   const std::string csv = to_csv(compare_rows(made, "seed < 9"));
-  EXPECT_THAT(csv, testing::StartsWith("kind,by,metric,where,group,"));
+  EXPECT_THAT(csv, testing::StartsWith("kind,by,metric,where,planned,plan,group,"));
   const std::vector<Row> rows = compare_rows(made, "");
   ASSERT_EQ(rows.size(), 3U);
   EXPECT_EQ(*rows[0].find("group"), Scalar{std::string("a")});

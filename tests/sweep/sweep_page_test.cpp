@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 // The page of a large sweep has an even selection of its jobs and the results of all.
 #include "report/page/sweep_page.hpp"
+
+#include "analysis/compare_plan.hpp"
 #include "support/large_sweep.hpp"
 #include "support/support.hpp"
 
@@ -103,6 +105,20 @@ TEST_F(LargeSweep, HasAllJobsOnItsPageWhereThereIsRoom) {
   EXPECT_EQ(page.at("jobs").size(), 2000U);
   EXPECT_EQ(page.at("tally").at("step"), 1);
   EXPECT_EQ(data(sweep_, 1999).at("jobs").size(), 1000U) << "one more than there is room for";
+}
+
+TEST(SweepPage, StatesWhetherAComparisonWasPlannedBeforeTheFirstRun) {
+  const TemporaryFolder folder;
+  const Sweep sweep = large_sweep(folder.path() / "many" / "0123456789ab", 3);
+  const auto planned = [&] { return sweep_data(sweep, [](int, int) {}).at("planned").get<std::string>(); };
+  EXPECT_EQ(planned(),
+            "No comparison was planned before the first run: comparisons on this page were chosen afterwards.");
+  write_file(sweep.directory / "config.yaml",
+             "name: many\ncompare: {metric: rmse_m, by: acquisition, seeds: 3, difference: 2 mm}\n");
+  const std::string hash = recorded_plan({sweep.directory})->hash;
+  EXPECT_EQ(planned(), "Planned before the first run (plan " + hash +
+                           "): rmse_m by acquisition, 3 seeds, differences from 2 mm matter. Other comparisons on this "
+                           "page were chosen afterwards.");
 }
 
 }  // namespace

@@ -269,7 +269,9 @@ TEST_F(Bundle, RefusesWhatItCannotPack) {
   write("text.palpate.tar.gz", "no archive");
   EXPECT_THAT(refused({"verify", "text.palpate.tar.gz"}), HasSubstr("is not an archive of gzip"));
   write_archive(here() / "other.palpate.tar.gz", "other",
-                XX
+                {{"a.txt", "a"}, {kSumsFile, sums_text({{"a.txt", sha256_of("a")}})}});
+  EXPECT_THAT(palpate({"verify", "other.palpate.tar.gz"}).out,
+              AllOf(HasSubstr("a.txt does not belong to the bundle"), HasSubstr("README.md is not as")));
 }
 
 }  // namespace

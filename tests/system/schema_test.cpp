@@ -119,6 +119,13 @@ TEST_F(Schema, RefusesWhatTheProgramRefuses) {
   EXPECT_TRUE(refused("/sweep", {{"sobol", {{"samples", 0}, {"keys", points["keys"]}}}})) << "no points";
   EXPECT_TRUE(refused("/sweep", {{"sobol", {{"samples", 4}}}})) << "no keys";
   EXPECT_TRUE(refused("/sweep", {{"where", 3}})) << "no condition";
+  Json plan = {{"metric", "rmse_m"}, {"by", {"acquisition", "kernel"}}, {"seeds", 40}, {"difference", "1 mm"}};
+  EXPECT_FALSE(refused("/compare", plan));
+  EXPECT_FALSE(refused("/compare", "none"));
+  plan["seeds"] = "many";
+  EXPECT_TRUE(refused("/compare", plan)) << "wrong type";
+  EXPECT_TRUE(refused("/compare", {{"metric", "rmse_m"}, {"by", "acquisition"}})) << "no seeds";
+  EXPECT_TRUE(refused("/compare", {{"metrics", "rmse_m"}})) << "unknown option";
 }
 
 }  // namespace

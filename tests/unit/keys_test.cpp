@@ -23,7 +23,7 @@ std::vector<FieldDescription> all_fields() {
 
 TEST(ConfigKeys, OfTheRunAreTheWorldTheBudgetAndWhatIsKeptAndAllElseIsAStrategys) {
   const std::set<std::string> of_run{"name", "seed",     "taps",   "candidates", "scene", "backend",
-                                     "log",  "complete", "expect", "sweep",      "tune"};
+                                     "log",  "complete", "expect", "sweep",      "tune",  "compare"};
   std::set<std::string> found;
   for (const FieldDescription& field : all_fields()) {
     if (field.owner == Owner::run) found.insert(field.name);

@@ -2,6 +2,7 @@
 #include "report/page/sweep_page.hpp"
 
 #include "analysis/column.hpp"
+#include "analysis/compare_plan.hpp"
 #include "analysis/groups.hpp"
 #include "analysis/pareto.hpp"
 #include "config/quantity.hpp"
@@ -274,6 +275,14 @@ PageJobs read_page_jobs(const Sweep& sweep, std::size_t step, const OnProgress& 
   return out;
 }
 
+/// Returns a sentence that states whether a comparison was planned before the first run.
+std::string planned_sentence(const Sweep& sweep) {
+  const std::optional<ComparePlan> plan = recorded_plan({sweep.directory});
+  if (!plan) return "No comparison was planned before the first run: comparisons on this page were chosen afterwards.";
+  return "Planned before the first run (plan " + plan->hash + "): " + plan->words() +
+         ". Other comparisons on this page were chosen afterwards.";
+}
+
 /// Adds to `data` the columns, each with its mean per setting, and the Pareto fronts.
 void add_columns(Json& data, const Sweep& sweep, const std::vector<JobResult>& jobs,
                  const std::vector<NumberColumn>& columns, const std::vector<std::size_t>& units) {
@@ -328,6 +337,7 @@ Json sweep_data(const Sweep& sweep, const OnProgress& progress, std::size_t most
            {"tally", page.tally.json(sweep, step)},
            {"config", to_yaml(read_run_config(sweep.directory))}};
   if (Json race = json_of_race(sweep); !race.is_null()) out["race"] = std::move(race);
+  if (sweep.rounds.empty()) out["planned"] = planned_sentence(sweep);
   add_columns(out, sweep, page.jobs, columns, units);
   return out;
 }

@@ -306,6 +306,7 @@ function placePanels(sweep, chooser) {
   document.body.append(
     ...(sweep.race ? [placeRace(sweep)] : []),
     ...(sweep.curves ? [placeCurves(sweep, chooser, choices)] : []),
+    ...(sweep.planned ? [element("p", { class: "sub", id: "planned" }, foreign(sweep.planned))] : []),
     element("div", { class: "controls" }, chooser("metric", "show", columns, [drawCells, drawGroups, drawParallel], withUnit)),
     section(
       "By two keys",
