@@ -12,7 +12,7 @@ generated=$(mktemp -d)
 trap 'rm -rf "$found" "$generated"' EXIT
 
 # A folder uses those above it in this list, which is that of framework/README.md, never those below.
-folders="math children reading answers regular config host scene gp belief experiment record sweep launch analysis tune calibrate report watch cli"
+folders="math children reading answers regular config host scene gp belief experiment record sweep launch analysis tune bundle calibrate report watch cli"
 # The folders of palpate_core.
 core="framework/config framework/host framework/scene framework/gp framework/belief framework/experiment framework/record"
 for file in $(git ls-files 'framework/*.[ch]pp' ':!framework/include' ':!framework/shared' ':!framework/python'); do

@@ -7,7 +7,7 @@
 set -u
 cd "$(dirname "$(readlink -f "$0")")/.." || exit 1
 tests=build/release/tests
-names="sanitizers stress fuzz accuracy coverage same_taps lines stability robots chaos clang tsan threads arm64"
+names="sanitizers stress fuzz accuracy coverage same_taps bundle lines stability robots chaos clang tsan threads arm64"
 names="$names debian_12 pages_12 packages_12 debian_13 pages_13 packages_13 benchmarks"
 for name in "$@"; do
   case " $names " in *" $name "*) continue ;; esac
@@ -49,6 +49,22 @@ coverage() {
   rm -rf build/long/coverage
   build/release/palpate sweep tests/benchmark/coverage/arm.yaml --runs build/long/coverage --quiet &&
     $tests/interval_coverage 1000 build/long/coverage/*/*/results.csv=rmse_m
+}
+
+# bundle: the paper's comparison from 1000 starts and its figures as a bundle, which is verified; 300 changes of a bundle
+# are found.
+bundle() {
+  here=build/long/bundle
+  rm -rf "$here" && mkdir -p "$here" &&
+    for config in comparison figures; do build/release/palpate sweep "configs/paper/$config.yaml" --runs "$here/runs" --quiet || return; done &&
+    build/release/palpate sweep configs/paper/comparison.yaml name=scales acquisition=weighted \
+      kernel.length_scale=1.7cm,3cm,13cm --runs "$here/runs" --quiet &&
+    build/release/palpate bundle "$here"/runs/*/* -o "$here/paper.palpate.tar.gz" \
+      --result 'compare comparison --by acquisition --metric object_taps,rmse_m' \
+      --result 'compare comparison --by acquisition --metric object_taps --where "first_hit_tap <= 3"' \
+      --result 'curves comparison --by acquisition' \
+      --result 'compare scales --by kernel.length_scale --metric rmse_height_m --where "first_hit_tap <= 3"' &&
+    build/release/palpate verify "$here/paper.palpate.tar.gz" && gtest system 'Bundle.*'
 }
 
 # lines: taps from any side by a program and by ask and tell, against those of the simulator.

@@ -39,6 +39,14 @@ std::string text_at(const Tree& tree, const char* key) {
   return found != nullptr ? found->text : "";
 }
 
+/// Returns version and commit in the first line of a record.
+std::string version_of(const std::string& record, const std::string& file) {
+  const Tree manifest = parse_json(record.substr(0, record.find('\n')), file);
+  const bool dirty = text_at(manifest, "dirty") == "true";
+  return fmt::format("palpate {}, commit {}{}", text_at(manifest, "version"), text_at(manifest, "commit"),
+                     dirty ? " with changes that are in no commit" : "");
+}
+
 /// Removes the values that change no result of a run.
 void erase_unimportant(Tree& config) {
   config.erase("log");
@@ -79,6 +87,7 @@ BundleIndex index_of(const std::map<std::string, std::string>& files,
     const bool is_sweep = boost::starts_with(name, "sweeps/") && name_only(name) == kManifest;
     const bool is_run = boost::starts_with(name, "records/") && name_only(name) == kRecordFile;
     if (is_sweep || is_run) out.records.push_back(fs::path(name).parent_path().string());
+    if (!is_sweep && name_only(name) == kRecordFile) out.versions.insert(version_of(read(name), name));
   }
   std::sort(out.records.begin(), out.records.end());
   const auto command = [&] { return fmt::format("results/{}/{}", out.commands.size() + 1, kCommandFile); };
@@ -104,6 +113,8 @@ std::string readme_text(const BundleIndex& index) {
   }
   for (std::size_t i = 0; i < index.commands.size(); ++i)
     out += fmt::format("| results/{} | output of `palpate {}` |\n", i + 1, words_text(index.commands[i]));
+  out += "\nThe runs were made with:\n\n";
+  for (const std::string& one : index.versions) out += "- " + one + "\n";
   return out +
          "\nEach run has `config.yaml`, every option with its value and unit, and `record.jsonl`, one JSON object per "
          "line.\n"
@@ -316,7 +327,10 @@ UnpackedBundle::UnpackedBundle(const fs::path& file, std::uintmax_t most_bytes) 
     }
   });
   digest_ = sha256_of(sums_);
-  index_ = index_of(hashes_, [&](const std::string& name) { return read(name); });
+}
+
+BundleIndex UnpackedBundle::read_index() const {
+  return index_of(hashes_, [&](const std::string& name) { return read(name); });
 }
 
 std::vector<std::string> UnpackedBundle::wrong_sums() const {

@@ -24,6 +24,7 @@
 #include <filesystem>
 #include <functional>
 #include <map>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -44,6 +45,7 @@ std::string words_text(const CommandWords& words);
 struct BundleIndex {
   std::vector<std::string> records;    ///< folders of runs and sweeps, sorted
   std::vector<CommandWords> commands;  ///< of results/1, results/2, ...
+  std::set<std::string> versions;      ///< version and commit of each palpate that made a run
 };
 
 /// Finds the records and results among the files of a bundle. `read`: returns the content of a file.
@@ -114,7 +116,8 @@ class UnpackedBundle {
   /// Hash of SHA256SUMS, which a paper can print: 64 hex digits.
   const std::string& digest() const { return digest_; }
 
-  const BundleIndex& index() const { return index_; }
+  /// Throws Error for a damaged record.
+  BundleIndex read_index() const;
   /// Returns the content of a file. Throws Error.
   std::string read(const std::string& name) const { return read_file(folder() / name); }
 
@@ -126,7 +129,6 @@ class UnpackedBundle {
   std::map<std::string, std::string> hashes_;
   std::string sums_;
   std::string digest_;
-  BundleIndex index_;
 };
 
 }  // namespace palpate

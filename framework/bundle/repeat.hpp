@@ -53,6 +53,6 @@ struct BundleContent {
 
 /// Lists the runs of an unpacked bundle, and checks that every file is what the bundle would contain: jobs of sweeps,
 /// files that configs name, README.md. Content of runs, sources and results is not checked.
-BundleContent check_content(const UnpackedBundle& bundle);
+BundleContent check_content(const UnpackedBundle& bundle, const BundleIndex& index);
 
 }  // namespace palpate

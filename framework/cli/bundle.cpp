@@ -14,7 +14,6 @@
 #include <fmt/format.h>
 
 #include <boost/algorithm/string/predicate.hpp>
-#include <map>
 #include <string>
 #include <vector>
 
@@ -40,21 +39,19 @@ std::string name_of(const std::string& output, const fs::path& record) {
 
 int bundle(CommandEnvironment& program, const BundleArguments& arguments) {
   std::vector<CommandWords> commands;
-  for (const std::string& one : arguments.results) check_result_command(commands.emplace_back(words_of(one)));
+  for (const std::string& one : arguments.results) commands.push_back(words_of(one));
   const std::vector<fs::path> found = find_records(arguments.records);
   if (commands.empty() && recorded_plan(found)) commands.push_back({"compare"});
   const std::string name = name_of(arguments.output, fs::absolute(found.front()).lexically_normal());
   check_archived_name(name, arguments.output.empty() ? found.front().string() : arguments.output);
   const fs::path output = arguments.output.empty() ? name + kEnding : arguments.output;
   BundleCollector collector(program, {arguments.sources.begin(), arguments.sources.end()});
-  // Results of several records depend on their order, and a bundle lists them by their names in it.
-  std::map<std::string, fs::path> records;
+  BundledRecords records;
   for (const fs::path& one : found) records[collector.add(one)] = one;
-  std::vector<fs::path> directories;
-  for (const auto& [folder, directory] : records) directories.push_back(directory);
+  for (const CommandWords& one : commands) check_result_command(one, records);
   const ScratchFolder scratch;
   for (std::size_t i = 0; i < commands.size(); ++i) {
-    auto [file, content] = result_of(program, commands[i], directories, scratch.path());
+    auto [file, content] = result_of(program, commands[i], records, scratch.path());
     const std::string folder = fmt::format("results/{}/", i + 1);
     collector.add_file(folder + file, std::move(content));
     collector.add_file(folder + kCommandFile, words_text(commands[i]) + "\n");

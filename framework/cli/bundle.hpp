@@ -26,8 +26,9 @@ inline void add_bundle(CommandLine& line) {
   command.pooled_records(arguments.records);
   command.argument("-o", arguments.output, "FILE", "archive to write; default: NAME.palpate.tar.gz");
   command.argument("--result", arguments.results, "COMMAND",
-                   "compare, pareto or curves with its options, without records: a table or figure of the paper. "
-                   "'palpate verify' makes it again. Default: the planned comparison, if the sweep has one",
+                   "compare, pareto or curves with its options: a table or figure of the paper, which 'palpate verify' "
+                   "makes again. Names of sweeps before the options select them; without names, all records are used. "
+                   "Default: the planned comparison, if all records have the same",
                    {one_per_option()});
   command.argument("--sources", arguments.sources, "FOLDER",
                    "folder with the sources of plugins and programs that palpate does not contain", {one_per_option()});

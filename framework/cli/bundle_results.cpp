@@ -10,6 +10,7 @@
 #include <palpate/error.hpp>
 
 #include <fmt/format.h>
+#include <boost/algorithm/string/predicate.hpp>
 
 #include <algorithm>
 #include <memory>
@@ -52,11 +53,6 @@ std::string output_of(const CommandEnvironment& program, const CommandWords& wor
   return read_file(file);
 }
 
-CommandWords more(CommandWords words, const CommandWords& others) {
-  words.insert(words.end(), others.begin(), others.end());
-  return words;
-}
-
 std::vector<std::string> cells_of(const std::string& line) {
   std::vector<std::string> out;
   std::istringstream in(line);
@@ -64,29 +60,55 @@ std::vector<std::string> cells_of(const std::string& line) {
   return out;
 }
 
+/// Returns the words of a command before its first option: names of records.
+CommandWords names_in(const CommandWords& command) {
+  const auto option =
+      std::find_if(command.begin(), command.end(), [](const std::string& one) { return boost::starts_with(one, "-"); });
+  return {command.begin() + 1, option};
+}
+
+/// Returns whether a record in the folder "sweeps/NAME/ID" is one of these names.
+bool is_named(const std::string& folder, const CommandWords& names) {
+  const std::string name = fs::path(folder).parent_path().filename().string();
+  return names.empty() || std::count(names.begin(), names.end(), name) > 0;
+}
+
 }  // namespace
 
-void check_result_command(const CommandWords& command) {
-  const std::string name = command.empty() ? "" : command.front();
-  if (name != "compare" && name != "pareto" && name != "curves")
-    throw Error("command line", "--result: '" + name + "' is not compare, pareto or curves",
-                "write for example --result \"compare --by acquisition --metric rmse_m\"");
+void check_result_command(const CommandWords& command, const BundledRecords& records) {
+  const auto refuse = [](const std::string& reason, const std::string& hint) {
+    return Error("command line", "--result: " + reason, hint);
+  };
+  const std::string kind = command.empty() ? "" : command.front();
+  if (kind != "compare" && kind != "pareto" && kind != "curves")
+    throw refuse("'" + kind + "' is not compare, pareto or curves",
+                 "write for example --result \"compare --by acquisition --metric rmse_m\"");
   for (const char* const option : {"-o", "--format"}) {
     if (std::count(command.begin(), command.end(), option) > 0)
-      throw Error("command line", fmt::format("--result: the bundle sets {} itself", option), "leave it out");
+      throw refuse(fmt::format("the bundle sets {} itself", option), "leave it out");
+  }
+  for (const std::string& name : names_in(command)) {
+    const auto has_name = [&](const auto& record) { return is_named(record.first, {name}); };
+    if (std::none_of(records.begin(), records.end(), has_name))
+      throw refuse(fmt::format("no run or sweep of the bundle has the name '{}'", name),
+                   "the names are those of the folders in `runs`");
   }
 }
 
 std::pair<std::string, std::string> result_of(const CommandEnvironment& program, const CommandWords& command,
-                                              const std::vector<fs::path>& records, const fs::path& scratch) {
+                                              const BundledRecords& records, const fs::path& scratch) {
+  const CommandWords names = names_in(command);
   CommandWords words{command.front()};
-  for (const fs::path& record : records) words.push_back(record.string());
-  words.insert(words.end(), command.begin() + 1, command.end());
+  for (const auto& [folder, directory] : records) {
+    if (is_named(folder, names)) words.push_back(directory.string());
+  }
+  words.insert(words.end(), command.begin() + 1 + static_cast<std::ptrdiff_t>(names.size()), command.end());
   if (command.front() == "pareto") return {"table.txt", output_of(program, words, scratch)};
-  if (command.front() == "compare") return {"table.csv", output_of(program, more(words, {"--format", "csv"}), scratch)};
-  const fs::path table = scratch / "curves.csv";
-  output_of(program, more(words, {"-o", table.string()}), scratch);
-  return {"curves.csv", read_file(table)};
+  const bool is_table = command.front() == "compare";
+  const fs::path curves = scratch / "curves.csv";
+  words.insert(words.end(), {is_table ? "--format" : "-o", is_table ? "csv" : curves.string()});
+  const std::string output = output_of(program, words, scratch);
+  return {is_table ? "table.csv" : "curves.csv", is_table ? output : read_file(curves)};
 }
 
 std::vector<std::string> compare_outputs(const std::string& recorded, const std::string& now, const std::string& name,

@@ -6,20 +6,25 @@
 #include "cli/command_context.hpp"
 
 #include <filesystem>
+#include <map>
 #include <string>
 #include <utility>
 #include <vector>
 
 namespace palpate::cli {
 
-/// Throws Error for commands other than compare, pareto and curves, and for options that the bundle sets.
-void check_result_command(const CommandWords& command);
+/// Directories of the records of a bundle, by their folders in it.
+using BundledRecords = std::map<std::string, std::filesystem::path>;
 
-/// Returns name and content of the output of a command over these records: table.csv of compare, table.txt of pareto,
-/// or curves.csv. Throws Error if the command fails. `scratch`: an existing folder.
+/// Throws Error for commands other than compare, pareto and curves, for options that the bundle sets, and for a name
+/// that no record has.
+void check_result_command(const CommandWords& command, const BundledRecords& records);
+
+/// Returns name and content of the output of a command: table.csv of compare, table.txt of pareto, or curves.csv. The
+/// words before the first option are names of runs and sweeps; without such words, the command uses all records. Throws
+/// Error if the command fails. `scratch`: an existing folder.
 std::pair<std::string, std::string> result_of(const CommandEnvironment& program, const CommandWords& command,
-                                              const std::vector<std::filesystem::path>& records,
-                                              const std::filesystem::path& scratch);
+                                              const BundledRecords& records, const std::filesystem::path& scratch);
 
 /// Returns one line per difference between two outputs of a command, the content of the file `name`. Unless `exact`,
 /// numbers may differ by kNumberTolerance.

@@ -109,18 +109,19 @@ bool check_runs(const CommandEnvironment& program, const VerifyArguments& argume
 }
 
 /// Makes each result again and compares it.
-void check_results(const CommandEnvironment& program, const UnpackedBundle& bundle, Findings& findings) {
+void check_results(const CommandEnvironment& program, const UnpackedBundle& bundle, const BundleIndex& index,
+                   Findings& findings) {
   const ScratchFolder scratch;
-  std::vector<fs::path> records;
-  for (const std::string& one : bundle.index().records) records.push_back(bundle.folder() / one);
+  BundledRecords records;
+  for (const std::string& one : index.records) records[one] = bundle.folder() / one;
   std::set<std::string> expected;
   std::size_t equal = 0;
-  const std::vector<CommandWords>& commands = bundle.index().commands;
+  const std::vector<CommandWords>& commands = index.commands;
   for (std::size_t i = 0; i < commands.size(); ++i) {
     std::vector<std::string> differences;
     const std::string folder = fmt::format("results/{}/", i + 1);
     const auto trouble = catch_error([&] {
-      check_result_command(commands[i]);
+      check_result_command(commands[i], records);
       const auto [file, content] = result_of(program, commands[i], records, scratch.path());
       differences = compare_outputs(bundle.read(folder + file), content, folder + file, findings.same_build);
       if (bundle.read(folder + kCommandFile) != words_text(commands[i]) + "\n")
@@ -148,11 +149,12 @@ int verify(CommandEnvironment& program, const VerifyArguments& arguments) {
   const bool sums_match = findings.differences.empty();
   if (sums_match) {
     print_out("files: {}, all as in SHA256SUMS\n", bundle.hashes().size());
+    const BundleIndex index = bundle.read_index();
     const BundlePlugins plugins(program, bundle, arguments.with_plugins);
-    const BundleContent content = check_content(bundle);
+    const BundleContent content = check_content(bundle, index);
     findings.add("", content.differences);
     if (!check_runs(plugins.program(), arguments, bundle, content.runs, findings)) return kInterrupted;
-    check_results(plugins.program(), bundle, findings);
+    check_results(plugins.program(), bundle, index, findings);
   }
   for (const auto& [reason, count] : findings.not_repeated)
     print_out("not repeated: {}, because {}\n", counted(count, "run"), reason);

@@ -105,6 +105,7 @@ const std::vector<Page> kPages{{"README.md", 0},
                                {"framework/docs/sweeps.md", 0},
                                {"framework/docs/comparing.md", 9},
                                {"framework/docs/tuning.md", 0},
+                               {"framework/docs/bundles.md", 1},
                                {"framework/docs/scenes.md", 3},
                                {"framework/docs/robots.md", 0},
                                {"framework/docs/ci.md", 0},
@@ -133,7 +134,7 @@ TEST(Documents, AreShortAndEachPageIsTriedAndLinkedFromReadme) {
     EXPECT_THAT(readme, HasSubstr("](" + name + ")"));
   }
   // The examples of python.md run in tests/python.
-  EXPECT_EQ(pages, 16) << "a new page needs its test above";
+  EXPECT_EQ(pages, 17) << "a new page needs its test above";
 }
 
 TEST(Documents, MapTheCodeOnOnePage) {
