@@ -193,17 +193,18 @@ void BundleCollector::add_source(const fs::path& folder, const std::string& pref
     const std::string name = path.filename().string();
     const fs::file_status status = fs::symlink_status(path);
     if (name.front() == '.') continue;
-    if (fs::is_directory(status)) add_source(path, prefix + "/" + name);
+    const std::string bundled = fmt::format("{}/{}", prefix, name);
+    if (fs::is_directory(status)) add_source(path, bundled);
     if (!fs::is_regular_file(status)) continue;
-    check_archived_name(prefix + "/" + name, path.string());
-    files_[prefix + "/" + name] = read_file(path, kMostSourceBytes);
+    check_archived_name(bundled, path.string());
+    files_[bundled] = read_file(path, kMostSourceBytes);
   }
 }
 
 std::string BundleCollector::add(const fs::path& directory) {
   if (is_sweep(directory)) return add_sweep(read_sweep(directory));
   const RunIdentity run = read_identity(directory);
-  const std::string name = fmt::format("records/{}/{}", slug(run.name), run.identity.substr(0, kIdLength));
+  std::string name = fmt::format("records/{}/{}", slug(run.name), run.identity.substr(0, kIdLength));
   add_run(directory, name);
   return name;
 }
@@ -299,9 +300,9 @@ std::string BundleCollector::add_sweep(const Sweep& sweep) {
     if (named != named_files_.end()) one.text = named->second;
   });
   const std::string id = sweep_id(config, sweep);
-  const std::string name = fmt::format("sweeps/{}/{}", slug(sweep_name(sweep)), id);
+  std::string name = fmt::format("sweeps/{}/{}", slug(sweep_name(sweep)), id);
   for (auto& [file, content] : jobs)
-    files_[file.rfind("jobs/", 0) == 0 ? name + "/" + file : file] = std::move(content);
+    files_[boost::starts_with(file, "jobs/") ? fmt::format("{}/{}", name, file) : file] = std::move(content);
   files_[name + "/config.yaml"] = portable_sweep_config(std::move(config));
   files_[name + "/" + kManifest] = manifest_text(sweep, id);
   return name;

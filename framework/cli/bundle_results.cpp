@@ -13,11 +13,9 @@
 #include <boost/algorithm/string/predicate.hpp>
 
 #include <algorithm>
+#include <cstdio>
 #include <memory>
 #include <sstream>
-
-#include <fcntl.h>
-#include <unistd.h>
 
 namespace palpate::cli {
 
@@ -31,9 +29,9 @@ std::string output_of(const CommandEnvironment& program, const CommandWords& wor
   flush_output();
   const std::unique_ptr<ChildProcess> child = ChildProcess::fork([&](const ChildProcess::Say& say) {
     try {
-      const int out = ::open(file.c_str(), O_CREAT | O_TRUNC | O_WRONLY | O_CLOEXEC, 0600);
-      if (out < 0 || ::dup2(out, STDOUT_FILENO) < 0) throw Error(file.string(), "cannot be written");
-      ::dup2(::open("/dev/null", O_WRONLY | O_CLOEXEC), STDERR_FILENO);  // progress, and names of further files
+      // What else the command prints are progress, and names of further files.
+      if (std::freopen(file.c_str(), "w", stdout) == nullptr || std::freopen("/dev/null", "w", stderr) == nullptr)
+        throw Error(file.string(), "cannot be written");
       std::vector<const char*> arguments{"palpate"};
       for (const std::string& word : words) arguments.push_back(word.c_str());
       CommandLine line(program.installation, false);

@@ -13,7 +13,6 @@ struct RerunArguments {
   std::string bundle;
   std::string run;
   std::string runs = "runs";
-  bool with_plugins = false;
   int max_size = kMaxSize;
 };
 PALPATE_WHOLE int rerun(CommandEnvironment& program, const RerunArguments& arguments);
@@ -25,7 +24,8 @@ inline void add_rerun(CommandLine& line) {
   command.argument("RUN", arguments.run, "ID", "id of a run in the bundle, or its first digits", {required()});
   command.argument("--runs", arguments.runs, "FOLDER", kRunsHelp, {with_default()});
   command.argument("--max-size", arguments.max_size, "GIB", kMaxSizeHelp, {at_least(1), with_default()});
-  command.examples({"palpate rerun paper.palpate.tar.gz 60790461c9b5"});
+  command.examples(
+      {"palpate rerun paper.palpate.tar.gz 60790461c9b5", "palpate rerun paper.palpate.tar.gz 6079 --runs others"});
 }
 
 }  // namespace palpate::cli

@@ -72,7 +72,7 @@ struct Findings {
   bool same_build = true;                   ///< whether this build made all runs that were checked
 
   void add(const std::string& place, const std::vector<std::string>& lines) {
-    for (const std::string& one : lines) differences.push_back(place.empty() ? one : place + ": " + one);
+    for (const std::string& one : lines) differences.push_back(place.empty() ? one : fmt::format("{}: {}", place, one));
   }
 };
 

@@ -46,7 +46,7 @@ class Completion : public Shell {
 };
 
 TEST_F(Completion, OfCommandsAndOptionsSaysWhatTheyAreFor) {
-  EXPECT_THAT(offered({"re"}), UnorderedElementsAre(Key("resume"), Key("replay"), Key("report")));
+  EXPECT_THAT(offered({"re"}), UnorderedElementsAre(Key("resume"), Key("replay"), Key("report"), Key("rerun")));
   EXPECT_THAT(offered({""}), Contains(Pair("run", "Run one experiment")));
   EXPECT_THAT(offered({"run", "--dry"}),
               Contains(Pair("--dry-run", "print the planned run, its directory and its models; nothing moves")));
