@@ -28,7 +28,7 @@ fuzz() {
 }
 
 first() { fuzz answer 400 2000 && fuzz scores 100 300 && fuzz record 15 4000 && fuzz mesh 1 4000; }
-second() { fuzz words 300 300 && fuzz heights 100 4000 && fuzz xmlrpc 50 4000 && fuzz table 20 2000 && fuzz plan 10 4000 && fuzz config 4 4000; }
+second() { fuzz words 300 300 && fuzz heights 100 4000 && fuzz xmlrpc 50 4000 && fuzz table 20 2000 && fuzz plan 10 4000 && fuzz bundle 20 4000 && fuzz config 4 4000; }
 first &
 second
 wait $!

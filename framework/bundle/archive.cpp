@@ -29,7 +29,8 @@ constexpr std::size_t kShortName = 100;    ///< longer names are split at a '/' 
 constexpr std::size_t kLongestName = 200;  ///< without the folder of the bundle
 constexpr std::size_t kLongestPrefix = 155;
 constexpr std::ptrdiff_t kMostLevels = 12;
-constexpr std::size_t kMostFiles = 400'000;
+constexpr std::size_t kMostFiles = 100'000;  ///< per GiB of the limit; a sweep of 4000 runs has 8000
+constexpr std::size_t kFoldersPerFile = 2;
 constexpr std::uintmax_t kMostContent = std::uintmax_t{512} << 20;
 /// Records are compressed about 14 : 1. A larger ratio than this, after the first bytes, is no archive of records.
 constexpr std::uintmax_t kMostRatio = 60;
@@ -133,6 +134,8 @@ class KnownNames {
       add_part(name.substr(0, slash), true, file);
     add_part(name, false, file);
   }
+  /// Returns the number of files and folders.
+  std::size_t size() const { return parts_.size(); }
 
  private:
   struct Part {
@@ -207,6 +210,7 @@ void read_archive(const fs::path& file, std::uintmax_t most_bytes,
   KnownNames known;
   std::optional<std::string> folder;
   std::uintmax_t bytes = 0;
+  const std::size_t most_files = std::max<std::size_t>(1, most_bytes >> 30) * kMostFiles;
   for (std::size_t count = 1;; ++count) {
     const std::string header = in.read(kBlock);
     if (header == std::string(kBlock, '\0')) break;
@@ -223,7 +227,9 @@ void read_archive(const fs::path& file, std::uintmax_t most_bytes,
     check_archived_name(name, place);
     known.add(name, place);
     bytes += size;
-    if (count > kMostFiles) throw refused(place, fmt::format("has more than {} files", kMostFiles));
+    if (count > most_files || known.size() > (1 + kFoldersPerFile) * most_files)
+      throw refused(place, fmt::format("has more than {} files, or too many folders", most_files),
+                    "if you trust its author, allow more with --max-size");
     if (size > kMostContent) throw refused(place, fmt::format("'{}' has more than {} bytes", name, kMostContent));
     if (bytes > most_bytes)
       throw refused(place, fmt::format("unpacks to more than {} bytes", most_bytes),

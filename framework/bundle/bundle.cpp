@@ -11,10 +11,12 @@
 #include <palpate/error.hpp>
 
 #include <fmt/format.h>
+#include <boost/algorithm/string/case_conv.hpp>
 #include <boost/algorithm/string/predicate.hpp>
 
 #include <algorithm>
 #include <iomanip>
+#include <locale>
 #include <memory>
 #include <optional>
 #include <set>
@@ -52,6 +54,7 @@ void erase_unimportant(Tree& config) {
   config.erase("log");
   config.erase("expect");
   config.erase_path(kThreads);
+  config.erase_path("backend.pace");
 }
 
 /// Returns a source location such as /home/ann/kernel/rbf.yaml:3:17 without the folders of the machine. The folder of a
@@ -65,12 +68,16 @@ std::string portable_origin(const std::string& origin, const Tree& config) {
 }  // namespace
 
 std::string words_text(const CommandWords& words) {
-  std::string out;
+  std::ostringstream out;
   for (const std::string& word : words) {
-    const bool is_plain = word.find_first_of(" \t'\"") == std::string::npos && !word.empty();
-    out += (out.empty() ? "" : " ") + (is_plain ? word : fmt::format("\"{}\"", word));
+    if (&word != &words.front()) out << ' ';
+    if (word.empty() || word.find_first_of(" \t\"\\") != std::string::npos) {
+      out << std::quoted(word);
+    } else {
+      out << word;
+    }
   }
-  return out;
+  return out.str();
 }
 
 CommandWords words_of(const std::string& text) {
@@ -146,24 +153,25 @@ std::string portable_record(const std::string& text, const fs::path& file) {
   std::istringstream lines(text);
   for (std::string line; std::getline(lines, line) && !lines.eof();) {
     const LineKind kind = kind_of_line(line);
-    if (kind == LineKind::manifest || kind == LineKind::attempt) {
-      Tree tree = parse_json(line, file);
-      make_portable(tree);
-      line = to_json_line(tree);
-    }
-    out += line + "\n";
+    Tree tree = parse_json(line, file);
+    if (kind == LineKind::manifest || kind == LineKind::attempt) make_portable(tree);
+    out += to_json_line(tree) + "\n";
   }
   return out;
 }
 
-std::string portable_config(Tree config, const std::map<std::string, std::string>& origins,
-                            const std::map<std::string, std::string>& replaced) {
-  erase_unimportant(config);
+void set_origins(Tree& config, const std::map<std::string, std::string>& origins) {
   for_all(config, [](Tree& tree) { tree.place = {}; });
   for (const auto& [path, origin] : origins) {
     if (origin == "default" || config.find_path(path) == nullptr) continue;
     config.at_path(path, {}).place.file = std::make_shared<const std::string>(portable_origin(origin, config));
   }
+}
+
+std::string portable_config(Tree config, const std::map<std::string, std::string>& origins,
+                            const std::map<std::string, std::string>& replaced) {
+  erase_unimportant(config);
+  set_origins(config, origins);
   for (const auto& [path, text] : replaced) config.at_path(path, {}).text = text;
   return to_yaml_with_places(config) + "\n";
 }
@@ -210,19 +218,23 @@ std::string BundleCollector::add(const fs::path& directory) {
 }
 
 std::string BundleCollector::add_named_file(const std::string& file, const Tree& config, const std::string& path) {
-  std::string& name = named_files_[file];
-  if (!name.empty()) return name;
-  fs::path place = file;
-  // Shipped configs name shipped files as configs/...
-  if (!is_there(place)) place = environment_.installation.configs.parent_path() / file;
-  const std::optional<std::string> content = read_if_there(place, kMostMeshBytes, FileOrigin::user);
-  if (!content) throw Error(file, "is missing, but a run to bundle has used it", "put it back, or leave this run out");
+  NamedFile& known = named_files_[file];
+  if (known.name.empty()) {
+    fs::path place = file;
+    // Shipped configs name shipped files as configs/...
+    if (!is_there(place)) place = environment_.installation.configs.parent_path() / file;
+    const std::optional<std::string> content = read_if_there(place, kMostMeshBytes, FileOrigin::user);
+    if (!content)
+      throw Error(file, "is missing, but a run to bundle has used it", "put it back, or leave this run out");
+    std::string ending = boost::to_lower_copy(fs::path(file).extension().string(), std::locale::classic());
+    if (ending.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789.") != std::string::npos) ending.clear();
+    known = {fmt::format("files/{}{}", sha256_of(*content), ending), hash_of(*content)};
+    files_[known.name] = *content;
+  }
   const Tree* checksum = config.find_path(path.substr(0, path.rfind('.')) + ".checksum");
-  if (checksum != nullptr && checksum->text != hash_of(*content))
+  if (checksum != nullptr && checksum->text != known.checksum)
     throw Error(file, "was changed since a run to bundle has used it", "put it back, or leave this run out");
-  name = fmt::format("files/{}{}", sha256_of(*content), fs::path(file).extension().string());
-  files_[name] = *content;
-  return name;
+  return known.name;
 }
 
 std::string BundleCollector::name_in_sources(const fs::path& path) const {
@@ -236,21 +248,22 @@ std::string BundleCollector::name_in_sources(const fs::path& path) const {
 
 void BundleCollector::move_program(Tree& command, Tree& folder) const {
   const std::string whole = name_in_sources(folder.text);
-  // The program is the first word that is a file. Its name does not enter the id, unlike those of other words.
+  // The program is the first word that is a file in the sources. Its name does not enter the id, unlike those of
+  // others.
   std::string::size_type begin = 0;
   std::string word;
-  for (std::istringstream words(command.text); words >> word;) {
+  std::string program;
+  fs::path hint = folder.text;
+  for (std::istringstream words(command.text); words >> word; begin += word.size()) {
     begin = command.text.find(word, begin);
-    if (fs::is_regular_file(fs::path(folder.text) / word)) break;
-    begin += word.size();
-    word.clear();
-  }
-  const std::string program = word.empty() ? "" : name_in_sources(fs::path(folder.text) / word);
-  if (program.empty()) {
     const fs::path file = fs::path(folder.text) / word;
-    throw Error(folder.text, "has a program that the bundle lacks: '" + command.text + "'",
-                "add --sources " + (word.empty() ? folder.text : file.parent_path().string()));
+    program = fs::is_regular_file(file) ? name_in_sources(file) : "";
+    if (!program.empty()) break;
+    if (begin > 0 && fs::is_regular_file(file)) hint = file.parent_path();
   }
+  if (program.empty())
+    throw Error(folder.text, "has a program that the bundle lacks: '" + command.text + "'",
+                "add --sources " + hint.string());
   if (!whole.empty() && !fs::path(word).is_absolute()) {
     folder.text = "/" + whole;
     return;
@@ -261,15 +274,18 @@ void BundleCollector::move_program(Tree& command, Tree& folder) const {
 
 void BundleCollector::add_run(const fs::path& directory, const std::string& prefix) {
   const RunStatus::State state = read_status(directory).state;
-  if (state == RunStatus::State::running || state == RunStatus::State::absent)
-    throw Error(directory.string(), state == RunStatus::State::running ? "is still running" : "has not run yet",
-                "bundle it when it has ended");
+  if (state != RunStatus::State::done && state != RunStatus::State::failed)
+    throw Error(directory.string(), "has not ended", "end it with 'palpate resume', or leave it out");
   const ResolvedConfig config = load_run(environment_.host, directory);
   const std::optional<Tree> manifest = read_manifest(directory);
   const Tree* plugins = manifest ? manifest->find("plugins") : nullptr;
   for (const Tree& one : plugins != nullptr ? plugins->items : std::vector<Tree>()) {
     const std::string name = text_at(one, "kind") + "/" + text_at(one, "name");
-    if (sources_.empty() && !is_there(environment_.installation.plugins / (name + ".so")))
+    const auto builds = [&](const auto& file) {
+      return name_only(file.first) == "CMakeLists.txt" && file.second.find(text_at(one, "name")) != std::string::npos;
+    };
+    if (!is_there(environment_.installation.plugins / (name + ".so")) &&
+        std::none_of(files_.begin(), files_.end(), builds))
       throw Error(directory.string(), "uses the plugin " + name + ", which palpate does not contain",
                   "add --sources with the folder of its sources");
   }
@@ -285,24 +301,29 @@ void BundleCollector::add_run(const fs::path& directory, const std::string& pref
   });
   files_[prefix + "/config.yaml"] = portable_config(std::move(tree), recorded_origins(directory), replaced);
   const fs::path record = directory / kRecordFile;
-  files_[prefix + "/" + kRecordFile] = portable_record(read_file(record), record);
+  std::string text = portable_record(read_file(record), record);
+  const auto [known, is_new] = files_.emplace(prefix + "/" + kRecordFile, text);
+  if (!is_new && known->second != text)
+    throw Error(directory.string(), "is in the bundle already, with another record", "leave one of them out");
 }
 
-std::string BundleCollector::add_sweep(const Sweep& sweep) {
+std::string BundleCollector::add_sweep(Sweep sweep) {
   Tree config = read_run_config(sweep.directory);
-  ArchivedFiles jobs;
-  std::swap(jobs, files_);
   for (const Job& job : sweep.jobs) add_run(job_directory(sweep, job), "jobs/" + job.id);
-  std::swap(jobs, files_);
-  for_all(config, [&](Tree& one) {
-    const auto named =
-        one.is_scalar() && fs::path(one.text).is_absolute() ? named_files_.find(one.text) : named_files_.end();
-    if (named != named_files_.end()) one.text = named->second;
-  });
+  const auto replace = [&](std::string& text) {
+    const auto named = fs::path(text).is_absolute() ? named_files_.find(text) : named_files_.end();
+    if (named != named_files_.end()) text = named->second.name;
+  };
+  for_all(config, [&](Tree& one) { replace(one.text); });
+  for (Job& job : sweep.jobs) std::for_each(job.values.begin(), job.values.end(), replace);
   const std::string id = sweep_id(config, sweep);
   std::string name = fmt::format("sweeps/{}/{}", slug(sweep_name(sweep)), id);
-  for (auto& [file, content] : jobs)
-    files_[boost::starts_with(file, "jobs/") ? fmt::format("{}/{}", name, file) : file] = std::move(content);
+  // The name depends on the files that the jobs have added.
+  for (auto at = files_.lower_bound("jobs/"); at != files_.end() && boost::starts_with(at->first, "jobs/");) {
+    auto job = files_.extract(at++);
+    job.key() = fmt::format("{}/{}", name, job.key());
+    files_.insert(std::move(job));
+  }
   files_[name + "/config.yaml"] = portable_sweep_config(std::move(config));
   files_[name + "/" + kManifest] = manifest_text(sweep, id);
   return name;

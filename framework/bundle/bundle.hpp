@@ -63,9 +63,11 @@ void make_portable(Tree& line);
 /// Returns a record.jsonl without paths, names and numbers of the machine and its processes.
 std::string portable_record(const std::string& text, const std::filesystem::path& file);
 
+/// Sets the source locations of values from recorded_origins(). Of the files, only the name remains, for a group with
+/// its folder.
+void set_origins(Tree& config, const std::map<std::string, std::string>& origins);
 /// Returns the config of a run as text, without values that change no result. `replaced`: texts of values by their
-/// dotted paths. `origins`: source locations of the values by their paths (recorded_origins()); of their files, only
-/// the name remains, for a group with its folder.
+/// dotted paths. `origins`: as for set_origins().
 std::string portable_config(Tree config, const std::map<std::string, std::string>& origins,
                             const std::map<std::string, std::string>& replaced = {});
 /// Returns config.yaml of a sweep likewise.
@@ -78,17 +80,22 @@ class BundleCollector {
   /// for two folders with the same name. Hidden files, build folders and links are left out.
   BundleCollector(const RunEnvironment& environment, const std::vector<std::filesystem::path>& sources);
 
-  /// Adds a run or a sweep. Throws Error for a run that is running or has no record, for a missing or changed file, and
+  /// Adds a run or a sweep. Throws Error for a run that has not ended, for a missing or changed file, and
   /// for a plugin or program whose sources are not given. Returns the folder of the record in the bundle.
   std::string add(const std::filesystem::path& directory);
   void add_file(const std::string& name, std::string content) { files_[name] = std::move(content); }
 
   /// Returns all files of the bundle.
   ArchivedFiles finish();
+  const ArchivedFiles& files() const { return files_; }
 
  private:
+  struct NamedFile {
+    std::string name;      ///< in the bundle
+    std::string checksum;  ///< as configs have it
+  };
   void add_run(const std::filesystem::path& directory, const std::string& prefix);
-  std::string add_sweep(const Sweep& sweep);
+  std::string add_sweep(Sweep sweep);
   void add_source(const std::filesystem::path& folder, const std::string& prefix);
   /// Adds a file that a config names, and returns its name in the bundle.
   std::string add_named_file(const std::string& file, const Tree& config, const std::string& path);
@@ -100,7 +107,7 @@ class BundleCollector {
 
   const RunEnvironment& environment_;
   std::map<std::filesystem::path, std::string> sources_;  ///< names of the folders in the bundle
-  std::map<std::string, std::string> named_files_;        ///< names in the bundle, by paths on this machine
+  std::map<std::string, NamedFile> named_files_;          ///< by paths on this machine
   ArchivedFiles files_;
 };
 

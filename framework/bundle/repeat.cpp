@@ -46,9 +46,27 @@ std::optional<double> number_of(const std::string& text) {
   return error == std::errc() && end == text.data() + text.size() ? std::optional(out) : std::nullopt;
 }
 
-/// Returns whether two values of a field count as different: see compare_rows().
+/// Returns whether two values of a field count as different. `exact`: made by the same build.
 bool differ(const std::string& field, const std::string& recorded, const std::string& now, bool exact) {
   return exact || kExactFields.count(field) > 0 ? recorded != now : palpate::differ(recorded, now);
+}
+
+/// Appends one line for each value that differs between two rows, with `place` at its beginning.
+void compare_rows(const Row& recorded, const Row& now, const std::string& place, bool exact,
+                  std::vector<std::string>& differences) {
+  const auto compare = [&](const std::string& field) {
+    const Scalar* const a = recorded.find(field);
+    const Scalar* const b = now.find(field);
+    const std::string before = shown(a);
+    const std::string after = shown(b);
+    const bool same_type = a != nullptr && b != nullptr && a->index() == b->index();
+    if (differ(field, before, after, exact) || (exact && !same_type))
+      differences.push_back(fmt::format("{}: {}: recorded {}, now {}", place, field, before, after));
+  };
+  for (const auto& [field, value] : recorded.fields) compare(field);
+  for (const auto& [field, value] : now.fields) {
+    if (recorded.find(field) == nullptr) compare(field);
+  }
 }
 
 bool is_of_process(const std::string& field) { return field == "at" || field == "host" || field == "pid"; }
@@ -67,21 +85,28 @@ bool is_comparable(LineKind kind, const std::string& field, bool exact) {
   return !boost::starts_with(field, kSummary) || !depends_on_machine(field.substr(kSummary.size()));
 }
 
-/// Lines of a record without clocks, and without what depends on kills if `attempts` is above 1.
+/// Lines of a record without clocks, and without what depends on kills and interrupts: the ends of attempts, further
+/// attempts, and if there are several attempts, times and notes.
 std::vector<std::pair<LineKind, Row>> comparable_lines(const std::string& text, std::size_t attempts, bool exact) {
   std::vector<std::pair<LineKind, Row>> out;
   std::istringstream lines(text);
+  std::set<LineKind> seen;
   for (std::string line; std::getline(lines, line);) {
     const LineKind kind = kind_of_line(line);
-    Row row = parse_json_row(line).value_or(Row());
-    const bool is_of_attempt = kind == LineKind::attempt || kind == LineKind::setup || kind == LineKind::timing ||
-                               kind == LineKind::note ||
-                               (kind == LineKind::end && row.text("end") == ending_name(Ending::EndKind::interrupted));
-    if (attempts > 1 && is_of_attempt) continue;
-    const auto end = std::remove_if(row.fields.begin(), row.fields.end(),
-                                    [&](const auto& one) { return !is_comparable(kind, one.first, exact); });
-    row.fields.erase(end, row.fields.end());
-    out.emplace_back(kind, std::move(row));
+    std::string reason;
+    std::optional<Row> row = parse_json_row(line, &reason);
+    if (!row) throw Error(kRecordFile, reason);
+    const bool is_first = seen.insert(kind).second;
+    const bool is_of_attempt = (kind == LineKind::attempt || kind == LineKind::setup) && !is_first;
+    const bool is_lost = attempts > 1 && (kind == LineKind::timing || kind == LineKind::note);
+    const bool is_interrupt = kind == LineKind::end && row->text("end") == ending_name(Ending::EndKind::interrupted);
+    if (is_of_attempt || is_lost || is_interrupt) continue;
+    const auto end = std::remove_if(row->fields.begin(), row->fields.end(), [&](const auto& one) {
+      const bool counts_attempts = kind == LineKind::end && one.first == "attempt";
+      return counts_attempts || !is_comparable(kind, one.first, exact);
+    });
+    row->fields.erase(end, row->fields.end());
+    out.emplace_back(kind, std::move(*row));
   }
   return out;
 }
@@ -90,10 +115,7 @@ std::vector<std::pair<LineKind, Row>> comparable_lines(const std::string& text, 
 void compare_records(const std::string& recorded, const std::string& now, std::size_t attempts, bool exact,
                      std::vector<std::string>& differences) {
   const auto before = comparable_lines(recorded, attempts, exact);
-  auto after = comparable_lines(now, attempts, exact);
-  const bool has_ended = !before.empty() && before.back().first == LineKind::end &&
-                         before.back().second.text("end") != ending_name(Ending::EndKind::interrupted);
-  if (!has_ended) after.resize(std::min(after.size(), before.size()));  // the repetition goes on
+  const auto after = comparable_lines(now, attempts, exact);
   if (before.size() != after.size())
     differences.push_back(fmt::format("{} lines, now {}", before.size(), after.size()));
   for (std::size_t i = 0; i < std::min(before.size(), after.size()); ++i) {
@@ -168,11 +190,14 @@ void check(const RunEnvironment& environment, const fs::path& bundle, const fs::
            const fs::path& scratch, bool runs_programs, RunCheck& out) {
   const RunRecord record = read_run_record(directory);
   if (!record.manifest) throw Error(record.file.string(), "has no manifest");
+  if (!record.end || record.end->how == Ending::EndKind::interrupted) throw Error(record.file.string(), "has no end");
+  // Each attempt that was killed may have lost the times of one tap.
+  if (record.timings.size() + std::max<std::size_t>(record.attempts.size(), 1) < record.taps.size() + 1)
+    throw Error(record.file.string(), "lacks times of taps");
   if (!record.attempts.empty() && record.attempts.front().text("build") != record.build())
     throw Error(record.file.string(), "names two builds for its first attempt");
   const std::string plugin = missing_plugin(environment.host, *record.manifest);
   if (!plugin.empty()) {
-    out.kind = RunCheck::Kind::unchecked;
     out.reason = "there is no plugin " + plugin;
     return;
   }
@@ -185,9 +210,19 @@ void check(const RunEnvironment& environment, const fs::path& bundle, const fs::
   const bool is_scored = resolved.notes.plugins.count({"acquisition", "program"}) > 0 && !runs_programs;
   // In a run from Python, the calling program may have scored the candidates.
   const std::vector<TapRecord> taps = read_taps(record.taps, record.file);
-  const bool is_chosen = std::any_of(taps.begin(), taps.end(), [](const TapRecord& tap) { return tap.is_of_caller(); });
-  if (maker == "simulator" && !is_scored && !is_chosen)
+  const auto of_caller =
+      std::count_if(taps.begin(), taps.end(), [](const TapRecord& tap) { return tap.is_of_caller(); });
+  const auto initial = std::count_if(taps.begin(), taps.end(),
+                                     [](const TapRecord& tap) { return tap.request.source == Source::initial; });
+  const bool is_chosen = of_caller > 0;
+  if (maker == "simulator" && !is_scored && !is_chosen) {
+    out.kind = RunCheck::Kind::repeated;
     return repeat(environment, resolved, record, scratch, out.same_build, out.differences);
+  }
+  if (maker == "simulator" && is_chosen && of_caller + initial < static_cast<std::ptrdiff_t>(taps.size())) {
+    out.reason = "a program chose some of its taps";
+    return;
+  }
   out.kind = RunCheck::Kind::replayed;
   out.reason = is_scored || is_chosen ? "a program chose its taps" : "its taps are of the backend " + maker;
   if (!has_backend) out.reason += ", which is not installed, so its config is not checked against its id";
@@ -217,20 +252,6 @@ bool differ(const std::string& recorded, const std::string& now) {
   const auto a = number_of(recorded);
   const auto b = number_of(now);
   return !a || !b || std::abs(*a - *b) > kNumberTolerance * std::max(std::abs(*a), std::abs(*b)) + kSmallNumber;
-}
-
-void compare_rows(const Row& recorded, const Row& now, const std::string& place, bool exact,
-                  std::vector<std::string>& differences) {
-  const auto compare = [&](const std::string& field) {
-    const std::string before = shown(recorded.find(field));
-    const std::string after = shown(now.find(field));
-    if (differ(field, before, after, exact))
-      differences.push_back(fmt::format("{}: {}: recorded {}, now {}", place, field, before, after));
-  };
-  for (const auto& [field, value] : recorded.fields) compare(field);
-  for (const auto& [field, value] : now.fields) {
-    if (recorded.find(field) == nullptr) compare(field);
-  }
 }
 
 RunCheck check_run(const RunEnvironment& environment, const UnpackedBundle& bundle, const std::string& run,

@@ -3,7 +3,6 @@
 #pragma once
 
 #include "bundle/bundle.hpp"
-#include "record/row.hpp"
 #include "record/run.hpp"
 
 #include <filesystem>
@@ -18,9 +17,9 @@ struct RunCheck {
   enum class Kind {
     repeated,   ///< a simulated run was run again
     replayed,   ///< the models were computed again from the recorded taps, because the taps cannot be made again
-    unchecked,  ///< a plugin is missing
+    unchecked,  ///< a plugin is missing, or the run cannot be read
   };
-  Kind kind = Kind::repeated;
+  Kind kind = Kind::unchecked;
   std::string reason;                    ///< why a run was not repeated; "" if it was
   std::vector<std::string> differences;  ///< one line per difference
   /// whether the program and the plugins are those that made the run; then all numbers must be equal
@@ -33,11 +32,6 @@ inline constexpr double kNumberTolerance = 1e-6;
 
 /// Returns whether two texts differ: as numbers by more than kNumberTolerance, or else at all.
 bool differ(const std::string& recorded, const std::string& now);
-
-/// Appends one line for each value that differs between two rows, with `place` at its beginning. Values that depend on
-/// the machine are not compared. With `exact`, all numbers must be equal.
-void compare_rows(const Row& recorded, const Row& now, const std::string& place, bool exact,
-                  std::vector<std::string>& differences);
 
 /// Checks a run of the bundle, whose folder is `run`, against its config. Makes the taps of a simulated run again, in
 /// the folder `scratch`; replays other runs. `runs_programs`: whether programs that the config names may be started.

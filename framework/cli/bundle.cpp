@@ -5,6 +5,7 @@
 #include "bundle/bundle.hpp"
 #include "cli/bundle_results.hpp"
 #include "cli/display.hpp"
+#include "cli/interrupt.hpp"
 #include "cli/output.hpp"
 #include "record/catalogue.hpp"
 #include "record/files.hpp"
@@ -14,6 +15,8 @@
 #include <fmt/format.h>
 
 #include <boost/algorithm/string/predicate.hpp>
+#include <cstdlib>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -35,6 +38,19 @@ std::string name_of(const std::string& output, const fs::path& record) {
   return name.substr(0, name.size() - std::string(kEnding).size());
 }
 
+/// Returns a line for each file that contains a path of this user.
+std::vector<std::string> paths_in(const ArchivedFiles& files) {
+  const char* const home = std::getenv("HOME");
+  std::vector<std::string> out;
+  for (const auto& [name, content] : files) {
+    for (const std::string& path : {std::string(home != nullptr ? home : ""), fs::current_path().string()}) {
+      if (path.size() > 1 && content.find(path + "/") != std::string::npos)
+        out.push_back(fmt::format("{} contains the path {}", name, path));
+    }
+  }
+  return out;
+}
+
 }  // namespace
 
 int bundle(CommandEnvironment& program, const BundleArguments& arguments) {
@@ -45,11 +61,21 @@ int bundle(CommandEnvironment& program, const BundleArguments& arguments) {
   const std::string name = name_of(arguments.output, fs::absolute(found.front()).lexically_normal());
   check_archived_name(name, arguments.output.empty() ? found.front().string() : arguments.output);
   const fs::path output = arguments.output.empty() ? name + kEnding : arguments.output;
+  if (is_there(output)) throw Error(output.string(), "exists already", "remove it, or choose another name with -o");
+  listen_for_interrupts();
   BundleCollector collector(program, {arguments.sources.begin(), arguments.sources.end()});
-  BundledRecords records;
-  for (const fs::path& one : found) records[collector.add(one)] = one;
-  for (const CommandWords& one : commands) check_result_command(one, records);
+  std::set<std::string> folders;
+  for (const fs::path& one : found) folders.insert(collector.add(one));
+  // The results come from the records as they are in the bundle, so that 'palpate verify' finds the same.
   const ScratchFolder scratch;
+  BundledRecords records;
+  for (const std::string& one : folders) records[one] = scratch.path() / one;
+  for (const CommandWords& one : commands) check_result_command(one, records);
+  if (commands.empty()) print_message("note: the bundle has no result; --result adds one\n");
+  for (const auto& [file, content] : commands.empty() ? ArchivedFiles() : collector.files()) {
+    fs::create_directories((scratch.path() / file).parent_path());
+    write_file(scratch.path() / file, content);
+  }
   for (std::size_t i = 0; i < commands.size(); ++i) {
     auto [file, content] = result_of(program, commands[i], records, scratch.path());
     const std::string folder = fmt::format("results/{}/", i + 1);
@@ -57,6 +83,8 @@ int bundle(CommandEnvironment& program, const BundleArguments& arguments) {
     collector.add_file(folder + kCommandFile, words_text(commands[i]) + "\n");
   }
   const ArchivedFiles files = collector.finish();
+  if (program.interrupted->load()) return kInterrupted;
+  for (const std::string& one : paths_in(files)) print_message("note: " + one + "\n");
   write_archive(output, name, files);
   print_out("{}: {} files\ndigest: {}\n", output.string(), files.size(), sha256_of(files.at(kSumsFile)));
   return kDone;

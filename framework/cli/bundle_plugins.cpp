@@ -27,10 +27,10 @@ namespace {
 void perform(const std::vector<std::string>& words) {
   const std::unique_ptr<ChildProcess> child = ChildProcess::start({words});
   if (child && child->wait() && child->status() == 0) return;
-  constexpr std::size_t kShown = 2000;
+  constexpr std::size_t kShown = 300;
   const std::string said = child ? child->said() : "it cannot be started";
   throw Error(fmt::format("{}", fmt::join(words, " ")),
-              "failed: " + said.substr(said.size() - std::min(kShown, said.size())),
+              "failed: " + one_line(said.substr(said.size() - std::min(kShown, said.size()))),
               "the sources of the bundle need CMake and a compiler", Error::Kind::run);
 }
 
@@ -63,7 +63,8 @@ BundlePlugins::BundlePlugins(const CommandEnvironment& program, const UnpackedBu
   if (!sources.empty()) ask(sources);
   fs::path prefix;
   for (const fs::path& source : sources) {
-    if (!is_there(source / "CMakeLists.txt")) continue;  // programs need no build
+    const auto list = read_if_there(source / "CMakeLists.txt", kMostConfigBytes);
+    if (!list || list->find("palpate_add_plugin") == std::string::npos) continue;  // programs need no build
     if (prefix.empty()) prefix = installed_prefix(program.installation, builds_.path());
     const fs::path build = builds_.path() / source.filename();
     perform({"cmake", "-S", source.string(), "-B", build.string(), "-DCMAKE_BUILD_TYPE=Release",

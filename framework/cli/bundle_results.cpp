@@ -10,11 +10,13 @@
 #include <palpate/error.hpp>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <boost/algorithm/string/predicate.hpp>
 
 #include <algorithm>
 #include <cstdio>
 #include <memory>
+#include <set>
 #include <sstream>
 
 namespace palpate::cli {
@@ -81,9 +83,18 @@ void check_result_command(const CommandWords& command, const BundledRecords& rec
   if (kind != "compare" && kind != "pareto" && kind != "curves")
     throw refuse("'" + kind + "' is not compare, pareto or curves",
                  "write for example --result \"compare --by acquisition --metric rmse_m\"");
-  for (const char* const option : {"-o", "--format"}) {
-    if (std::count(command.begin(), command.end(), option) > 0)
-      throw refuse(fmt::format("the bundle sets {} itself", option), "leave it out");
+  // Only these options: a command of a stranger must write no file and read no record outside of the bundle.
+  const std::set<std::string> options{"--by",    "--metric",  "--where", "--baseline", "--at",
+                                      "--until", "--against", "--cost",  "--error"};
+  const std::set<std::string> flags{"--ratio", "--importance"};
+  for (std::size_t i = 1 + names_in(command).size(); i < command.size(); ++i) {
+    const std::string& word = command[i];
+    const std::string option = word.substr(0, word.find('='));
+    if (flags.count(word) > 0) continue;
+    if (options.count(option) == 0)
+      throw refuse("the word '" + word + "' is not an option that a bundle can repeat",
+                   fmt::format("known: {}, {}", fmt::join(options, ", "), fmt::join(flags, ", ")));
+    if (option == word && ++i == command.size()) throw refuse(word + " has no value", "write one");
   }
   for (const std::string& name : names_in(command)) {
     const auto has_name = [&](const auto& record) { return is_named(record.first, {name}); };

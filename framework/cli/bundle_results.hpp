@@ -16,8 +16,8 @@ namespace palpate::cli {
 /// Directories of the records of a bundle, by their folders in it.
 using BundledRecords = std::map<std::string, std::filesystem::path>;
 
-/// Throws Error for commands other than compare, pareto and curves, for options that the bundle sets, and for a name
-/// that no record has.
+/// Throws Error for commands other than compare, pareto and curves, for options that write files or that are unknown,
+/// and for a name that no record has.
 void check_result_command(const CommandWords& command, const BundledRecords& records);
 
 /// Returns name and content of the output of a command: table.csv of compare, table.txt of pareto, or curves.csv. The

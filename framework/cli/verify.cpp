@@ -5,6 +5,7 @@
 #include "cli/bundle_plugins.hpp"
 #include "cli/bundle_results.hpp"
 #include "cli/display.hpp"
+#include "cli/interrupt.hpp"
 #include "cli/output.hpp"
 #include "cli/sweep_display.hpp"
 #include "config/catch_error.hpp"
@@ -21,6 +22,7 @@
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <random>
 #include <set>
 #include <sstream>
 
@@ -31,12 +33,12 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kShown = 20;
 
-/// Returns the numbers of `count` of `runs` runs, ascending. The digest of the bundle chooses them, so that the author
-/// of the bundle cannot.
-std::vector<std::size_t> sample_of(std::size_t runs, std::size_t count, const std::string& digest) {
+/// Returns the numbers of `count` of `runs` runs, ascending. Chance chooses them, so that the author of the bundle
+/// cannot.
+std::vector<std::size_t> sample_of(std::size_t runs, std::size_t count) {
   std::vector<std::size_t> out(runs);
   std::iota(out.begin(), out.end(), std::size_t{0});
-  Random random(0, digest);
+  Random random(std::random_device()(), "verify");
   for (std::size_t i = 0; i < std::min(count, runs); ++i) std::swap(out[i], out[i + random.index(runs - i)]);
   out.resize(std::min(count, runs));
   std::sort(out.begin(), out.end());
@@ -80,8 +82,8 @@ struct Findings {
 bool check_runs(const CommandEnvironment& program, const VerifyArguments& arguments, const UnpackedBundle& bundle,
                 const std::vector<std::string>& runs, Findings& findings) {
   const ScratchFolder scratch;
-  const std::vector<std::size_t> chosen = sample_of(
-      runs.size(), arguments.sample ? static_cast<std::size_t>(*arguments.sample) : runs.size(), bundle.digest());
+  const std::vector<std::size_t> chosen =
+      sample_of(runs.size(), arguments.sample ? static_cast<std::size_t>(*arguments.sample) : runs.size());
   const auto file_of = [&](std::size_t run) { return scratch.path() / fmt::format("{}.check", run); };
   if (!compute_jobs(program, chosen, arguments.workers, [&](std::size_t run) {
         write_check(file_of(run), check_run(program, bundle, runs[run], scratch.path() / std::to_string(run),
@@ -117,7 +119,7 @@ void check_results(const CommandEnvironment& program, const UnpackedBundle& bund
   std::set<std::string> expected;
   std::size_t equal = 0;
   const std::vector<CommandWords>& commands = index.commands;
-  for (std::size_t i = 0; i < commands.size(); ++i) {
+  for (std::size_t i = 0; i < commands.size() && !program.interrupted->load(); ++i) {
     std::vector<std::string> differences;
     const std::string folder = fmt::format("results/{}/", i + 1);
     const auto trouble = catch_error([&] {
@@ -142,6 +144,7 @@ void check_results(const CommandEnvironment& program, const UnpackedBundle& bund
 }  // namespace
 
 int verify(CommandEnvironment& program, const VerifyArguments& arguments) {
+  listen_for_interrupts();
   const UnpackedBundle bundle(arguments.bundle, bytes_of_gib(arguments.max_size));
   print_out("digest: {}\n", bundle.digest());
   Findings findings;
@@ -156,13 +159,14 @@ int verify(CommandEnvironment& program, const VerifyArguments& arguments) {
     if (!check_runs(plugins.program(), arguments, bundle, content.runs, findings)) return kInterrupted;
     check_results(plugins.program(), bundle, index, findings);
   }
+  if (program.interrupted->load()) return kInterrupted;
   for (const auto& [reason, count] : findings.not_repeated)
     print_out("not repeated: {}, because {}\n", counted(count, "run"), reason);
   const std::size_t differences = findings.differences.size();
   for (std::size_t i = 0; i < std::min(kShown, differences); ++i) print_out("{}\n", findings.differences[i]);
   if (differences > kShown) print_out("... and {} more\n", differences - kShown);
   print_out("{}{}\n", differences == 0 ? "no differences" : counted(static_cast<long>(differences), "difference"),
-            findings.unchecked == 0 ? "" : ", but some runs were not checked: see --with-plugins");
+            findings.unchecked == 0 ? "" : ", but some runs were not checked");
   return differences == 0 && findings.unchecked == 0 ? kDone : kFailed;
 }
 

@@ -28,8 +28,8 @@ inline void add_verify(CommandLine& line) {
   auto [command, arguments] = line.add<VerifyArguments>(
       "verify", "Make the runs, tables and figures of a bundle again and compare", verify, kNeedsEverything);
   command.argument("BUNDLE", arguments.bundle, "FILE", "archive that 'palpate bundle' wrote", {required()});
-  command.argument("--sample", arguments.sample, "N",
-                   "repeat only N runs, chosen by the digest of the bundle. All other checks remain", {at_least(1)});
+  command.argument("--sample", arguments.sample, "N", "repeat only N runs, chosen at random. All other checks remain",
+                   {at_least(1)});
   command.flag("--with-plugins", arguments.with_plugins,
                "build the sources in the bundle, and run these plugins and programs. Only for bundles of authors whom "
                "you trust; a terminal is asked first");

@@ -24,6 +24,8 @@ void words(const std::string& bytes);
 void record(const std::string& bytes);
 /// manifest.jsonl and config.yaml of a sweep.
 void plan(const std::string& bytes);
+/// The archive of a bundle, before it is compressed.
+void bundle(const std::string& bytes);
 /// A line from a program of the backend `process`. What is accepted is a height that the arm can have felt.
 void answer(const std::string& bytes);
 /// A table that the backend `replay` answers from.

@@ -3,6 +3,7 @@
 #include "fuzz/ground.hpp"
 #include "fuzz/harness.hpp"
 
+#include "bundle/archive.hpp"
 #include "record/run.hpp"
 #include "record/run_replay.hpp"
 #include "sweep/draft.hpp"
@@ -11,6 +12,8 @@
 #include <palpate/error.hpp>
 
 #include <array>
+
+#include <zlib.h>
 
 namespace palpate::fuzz {
 namespace {
@@ -108,6 +111,17 @@ void plan(const std::string& bytes) {
     const Sweep read = read_sweep(sweep);
     sweep_results(read, sweep_summaries(read));
     sweep_name(read);
+  });
+}
+
+void bundle(const std::string& bytes) {
+  static const fs::path file = ground().path() / "x.palpate.tar.gz";
+  gzFile out = gzopen(file.c_str(), "wb1");
+  gzwrite(out, bytes.data(), static_cast<unsigned>(bytes.size()));
+  gzclose(out);
+  constexpr std::uintmax_t kMost = std::uintmax_t{1} << 20;
+  attempt([&] {
+    read_archive(file, kMost, [](const std::string& name, const std::string&) { check_archived_name(name, "bundle"); });
   });
 }
 

@@ -96,6 +96,18 @@ TEST_P(SweepNumbers, StandBelowASentenceAboutTheirPlan) {
                     HasSubstr("): rmse_m by acquisition, 2 seeds. Other comparisons ")));
 }
 
+TEST_P(SweepNumbers, HaveTheImportanceOfTheKeysThatComparePrints) {
+  const fs::path directory = swept({paper_, "acquisition=weighted,uncertainty", "kernel.length_scale=1.7cm,3cm",
+                                    "taps=6", "seed=range(0,6)", "candidates.count=16"});
+  report(directory);
+  const Browsed seen = browse(directory, {drawn(1), "return document.getElementById('importance').textContent"});
+  ASSERT_EQ(seen.values.size(), 1U);
+  const test::Ended compared =
+      test::palpate({"compare", directory.string(), "--importance", "--metric", "rmse_m"}, folder_.path());
+  EXPECT_EQ(seen.values.at(0).get<std::string>() + "\n", compared.out);
+  EXPECT_THAT(compared.out, HasSubstr("acquisition,kernel.length_scale"));
+}
+
 TEST_P(SweepNumbers, PlotsWhatResultsCsvSaysAndFollowsItsControls) {
   const fs::path directory =
       swept({paper_, "acquisition=weighted,uncertainty", "kernel.length_scale=1.7 cm,10 mm,2.5cm", "taps=8,12",

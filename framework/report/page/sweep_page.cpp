@@ -4,7 +4,9 @@
 #include "analysis/column.hpp"
 #include "analysis/compare_plan.hpp"
 #include "analysis/groups.hpp"
+#include "analysis/importance.hpp"
 #include "analysis/pareto.hpp"
+#include "config/catch_error.hpp"
 #include "config/quantity.hpp"
 #include "config/yaml.hpp"
 #include "record/build_info.hpp"
@@ -283,6 +285,16 @@ std::string planned_sentence(const Sweep& sweep) {
          ". Other comparisons on this page were chosen afterwards.";
 }
 
+/// Returns how much each swept key matters for `metric`, as text. Returns "" if this cannot be computed, or if there
+/// are so many settings that it would take seconds.
+std::string importance_text(const Sweep& sweep, const std::vector<Row>& results, const std::string& metric) {
+  constexpr std::size_t kMostSettings = 300;
+  std::string out;
+  if (group_jobs(sweep, {}, setting_keys(sweep)).size() <= kMostSettings)
+    catch_error([&] { out = compute_importance(sweep, results, metric).text; });
+  return out;
+}
+
 /// Adds to `data` the columns, each with its mean per setting, and the Pareto fronts.
 void add_columns(Json& data, const Sweep& sweep, const std::vector<JobResult>& jobs,
                  const std::vector<NumberColumn>& columns, const std::vector<std::size_t>& units) {
@@ -338,6 +350,8 @@ Json sweep_data(const Sweep& sweep, const OnProgress& progress, std::size_t most
            {"config", to_yaml(read_run_config(sweep.directory))}};
   if (Json race = json_of_race(sweep); !race.is_null()) out["race"] = std::move(race);
   if (sweep.rounds.empty()) out["planned"] = planned_sentence(sweep);
+  const std::string metric = out.contains("race") ? out["race"]["metric"].get<std::string>() : main_error(page.results);
+  out["importance"] = importance_text(sweep, page.results, metric);
   add_columns(out, sweep, page.jobs, columns, units);
   return out;
 }

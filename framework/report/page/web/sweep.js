@@ -318,6 +318,7 @@ function placePanels(sweep, chooser) {
       choices(chooser("group", "groups by", [kEachSetting, ...keys], [drawGroups]), chooser("then", "and by", ["", ...keys], [drawGroups], orNothing)),
       figure("groups", ""),
     ),
+    ...(sweep.importance ? [section("Which key matters", element("pre", { class: "foreign scroll", id: "importance" }, sweep.importance))] : []),
     section("All keys at once", figure("parallel", "")),
     ...(sweep.curves ? [] : noCurves(sweep)),
     section(
