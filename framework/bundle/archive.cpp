@@ -31,7 +31,8 @@ constexpr std::size_t kLongestPrefix = 155;
 constexpr std::ptrdiff_t kMostLevels = 12;
 constexpr std::size_t kMostFiles = 100'000;  ///< per GiB of the limit; a sweep of 4000 runs has 8000
 constexpr std::size_t kFoldersPerFile = 2;
-constexpr std::uintmax_t kMostContent = std::uintmax_t{512} << 20;
+constexpr std::uintmax_t kFilesPerLimit =
+    8;  ///< a file has at most this part of the limit, because it is kept in memory
 /// Records are compressed about 14 : 1. A larger ratio than this, after the first bytes, is no archive of records.
 constexpr std::uintmax_t kMostRatio = 60;
 constexpr std::uintmax_t kFreeBytes = std::uintmax_t{16} << 20;
@@ -230,7 +231,9 @@ void read_archive(const fs::path& file, std::uintmax_t most_bytes,
     if (count > most_files || known.size() > (1 + kFoldersPerFile) * most_files)
       throw refused(place, fmt::format("has more than {} files, or too many folders", most_files),
                     "if you trust its author, allow more with --max-size");
-    if (size > kMostContent) throw refused(place, fmt::format("'{}' has more than {} bytes", name, kMostContent));
+    if (size > most_bytes / kFilesPerLimit)
+      throw refused(place, fmt::format("'{}' has more than {} bytes", name, most_bytes / kFilesPerLimit),
+                    "if you trust its author, allow more with --max-size");
     if (bytes > most_bytes)
       throw refused(place, fmt::format("unpacks to more than {} bytes", most_bytes),
                     "if you trust its author, allow more with --max-size");

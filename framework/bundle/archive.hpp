@@ -34,8 +34,8 @@ void write_archive(const std::filesystem::path& file, const std::string& folder,
 
 /// Passes the files of an archive to `use`, one after the other, without their common folder. Throws Error, with the
 /// place `file`, at the first part that write_archive() would not have written. Also throws if the files have more than
-/// `most_bytes`, or are more than 100000 per GiB of it, or if the archive is compressed by far more than records can
-/// be.
+/// `most_bytes`, or one of them more than an eighth of it, or are more than 100000 per GiB of it, or if the archive is
+/// compressed by far more than records can be.
 void read_archive(const std::filesystem::path& file, std::uintmax_t most_bytes,
                   const std::function<void(const std::string& name, const std::string& content)>& use);
 

@@ -32,6 +32,8 @@ namespace {
 constexpr const char* kReadme = "README.md";
 constexpr std::uintmax_t kMostSourceBytes = std::uintmax_t{64} << 20;
 constexpr const char* kManifest = "manifest.jsonl";
+constexpr std::size_t kMostResults = 100;
+constexpr std::size_t kMostSumsBytes = std::size_t{32} << 20;
 
 std::string name_only(const std::string& path) { return fs::path(path).filename().string(); }
 
@@ -98,7 +100,8 @@ BundleIndex index_of(const std::map<std::string, std::string>& files,
   }
   std::sort(out.records.begin(), out.records.end());
   const auto command = [&] { return fmt::format("results/{}/{}", out.commands.size() + 1, kCommandFile); };
-  while (files.count(command()) > 0) out.commands.push_back(words_of(read(command())));
+  while (out.commands.size() < kMostResults && files.count(command()) > 0)
+    out.commands.push_back(words_of(read(command())));
   return out;
 }
 
@@ -343,6 +346,7 @@ UnpackedBundle::UnpackedBundle(const fs::path& file, std::uintmax_t most_bytes) 
     fs::create_directories((folder() / name).parent_path());
     write_file(folder() / name, content);
     if (name == kSumsFile) {
+      if (content.size() > kMostSumsBytes) throw Error(file.string(), "has a too large file SHA256SUMS");
       sums_ = content;
     } else {
       hashes_[name] = sha256_of(content);
@@ -364,14 +368,15 @@ std::vector<std::string> UnpackedBundle::wrong_sums() const {
   };
   const std::string expected = sums_text(hashes_);
   if (sums_ == expected) return {};
+  constexpr std::size_t kShownBytes = 200;
   std::vector<std::string> out;
   const std::set<std::string> listed = lines_of(sums_);
   const std::set<std::string> found = lines_of(expected);
   for (const std::string& one : listed) {
-    if (found.count(one) == 0) out.push_back("SHA256SUMS lists, but no file has: " + one);
+    if (found.count(one) == 0) out.push_back("SHA256SUMS lists, but no file has: " + one_line(one, kShownBytes));
   }
   for (const std::string& one : found) {
-    if (listed.count(one) == 0) out.push_back("SHA256SUMS does not list: " + one);
+    if (listed.count(one) == 0) out.push_back("SHA256SUMS does not list: " + one_line(one, kShownBytes));
   }
   if (out.empty()) out.emplace_back("SHA256SUMS is not as 'palpate bundle' writes it");
   return out;

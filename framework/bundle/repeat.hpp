@@ -22,15 +22,14 @@ struct RunCheck {
   Kind kind = Kind::unchecked;
   std::string reason;                    ///< why a run was not repeated; "" if it was
   std::vector<std::string> differences;  ///< one line per difference
-  /// whether the program and the plugins are those that made the run; then all numbers must be equal
+  /// whether program, plugins and instruction set are those that made the run; then all numbers must be equal
   bool same_build = false;
 };
 
-/// Largest relative difference between numbers that two builds compute. Places, heights and outcomes of taps must be
-/// equal.
+/// Largest relative difference between numbers that two builds compute. Places and outcomes of taps must be equal.
 inline constexpr double kNumberTolerance = 1e-6;
 
-/// Returns whether two texts differ: as numbers by more than kNumberTolerance, or else at all.
+/// Returns whether two texts differ: the numbers in them by more than kNumberTolerance, or the other parts at all.
 bool differ(const std::string& recorded, const std::string& now);
 
 /// Checks a run of the bundle, whose folder is `run`, against its config. Makes the taps of a simulated run again, in
@@ -46,7 +45,7 @@ struct BundleContent {
 };
 
 /// Lists the runs of an unpacked bundle, and checks that every file is what the bundle would contain: jobs of sweeps,
-/// files that configs name, README.md. Content of runs, sources and results is not checked.
+/// files that configs name. Content of runs, sources and results is not checked.
 BundleContent check_content(const UnpackedBundle& bundle, const BundleIndex& index);
 
 }  // namespace palpate

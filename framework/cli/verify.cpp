@@ -38,7 +38,7 @@ constexpr std::size_t kShown = 20;
 std::vector<std::size_t> sample_of(std::size_t runs, std::size_t count) {
   std::vector<std::size_t> out(runs);
   std::iota(out.begin(), out.end(), std::size_t{0});
-  Random random(std::random_device()(), "verify");
+  Random random{std::random_device{}(), "verify"};
   for (std::size_t i = 0; i < std::min(count, runs); ++i) std::swap(out[i], out[i + random.index(runs - i)]);
   out.resize(std::min(count, runs));
   std::sort(out.begin(), out.end());
@@ -158,6 +158,10 @@ int verify(CommandEnvironment& program, const VerifyArguments& arguments) {
     findings.add("", content.differences);
     if (!check_runs(plugins.program(), arguments, bundle, content.runs, findings)) return kInterrupted;
     check_results(plugins.program(), bundle, index, findings);
+    // Another version may write another page.
+    if (bundle.hashes().count("README.md") == 0 ||
+        (findings.same_build && bundle.read("README.md") != readme_text(index)))
+      findings.add("", {"README.md is not as 'palpate bundle' writes it"});
   }
   if (program.interrupted->load()) return kInterrupted;
   for (const auto& [reason, count] : findings.not_repeated)

@@ -74,7 +74,7 @@ std::vector<Case> cases() {
       line("UnknownTopLevelKey", "colour: red",
            "10:1: unknown option 'colour', known: complete, name, seed, taps, initial, candidates, kernel, fitting, "
            "acquisition, choice, belief, backend, motion, scene, stop, log, defaults, strategy, sweep, "
-           "tune, expect"),
+           "tune, compare, expect"),
       line("DottedKeyInAFile", "belief.label.clip: yes",
            "10:1: unknown option 'belief.label.clip', write belief: {label: {clip: yes}}"),
       whole("DottedKeyWhereItsGroupIsNeeded", without("  - backend") + "backend.type: simulator\n",

@@ -32,6 +32,7 @@ class Bundle : public Shell {
  protected:
   /// Makes a bundle of these records and returns its files.
   ArchivedFiles bundled(const Words& words) const {
+    fs::remove(here() / kFile);
     const Ended ended = palpate(Words{"bundle", "-o", kFile} + words);
     EXPECT_EQ(ended.status, 0) << ended.err;
     return files_of(here() / kFile);
@@ -211,6 +212,66 @@ TEST_F(Bundle, ShowsEveryChangeEvenIfItsChecksumsAreMadeAgain) {
   }
 }
 
+TEST_F(Bundle, OfRunsThatWereKilledOrFailedVerifiesAndShowsALostEnd) {
+  const fs::path killed = ran({"name=killed", "taps=8", "candidates.count=16"});
+  break_off(killed);
+  ASSERT_EQ(resume(killed).status, 0);
+  const ArchivedFiles files = bundled({killed.string()});
+  const std::string record = "records/killed/" + killed.filename().string() + "/record.jsonl";
+  ASSERT_THAT(files.at(record), HasSubstr("\n{\"attempt\": 2,"));
+  EXPECT_EQ(verify().status, 0) << verify().out;
+  const auto changed = [&](const std::string& part, const std::string& other) {
+    ArchivedFiles out = files;
+    std::string& text = out.at(record);
+    EXPECT_NE(text.find(part), std::string::npos) << part;
+    text.replace(text.find(part), part.size(), other);
+    return verify_files(out, true);
+  };
+  EXPECT_EQ(changed(files.at(record).substr(files.at(record).find("{\"end\": \"done\"")), "").status, 1) << "no end";
+  EXPECT_EQ(changed("\"source\": \"acquisition\"", "\"source\": \"caller\"").status, 1);
+  EXPECT_NE(changed("\"height\": ", "\"height\": 1, \"height\": ").status, 0) << "a key twice";
+  EXPECT_EQ(changed("\"reason\": null", "\"reason\": \"null\"").status, 1);
+  break_off(killed);
+  EXPECT_THAT(refused({"bundle", killed.string(), "-o", "y.palpate.tar.gz"}), HasSubstr("has not ended"));
+}
+
+TEST_F(Bundle, RunsNoCommandAndWritesNoFileOfAStranger) {
+  const fs::path sweep = small_sweep();
+  const ArchivedFiles files = bundled({sweep.string(), "--result", "compare --by acquisition --metric rmse_m"});
+  ArchivedFiles changed = files;
+  const std::string id = job_of(sweep, 0).filename().string();
+  const auto job = std::find_if(changed.begin(), changed.end(), [&](const auto& one) {
+    return one.first.find(id + "/config.yaml") != std::string::npos;
+  });
+  ASSERT_NE(job, changed.end());
+  std::string& config = job->second;
+  const std::size_t at = config.find("acquisition:\n");
+  ASSERT_NE(at, std::string::npos);
+  config.replace(at, config.find("choice:", at) - at,
+                 "acquisition:\n  type: program\n  command: \"touch " + (here() / "PWNED").string() +
+                     "\"\n  folder: \"/\"\n  checksum: \"x\"\n  reads: \"none\"\n  deadline: 1 s\n  start: 1 s\n");
+  EXPECT_NE(verify_files(changed, true).status, 0);
+  palpate({"rerun", kFile, id, "--runs", "other"});
+  EXPECT_FALSE(fs::exists(here() / "PWNED"));
+  for (const std::string& words : {"curves --by acquisition -o" + (here() / "PWNED.csv").string(),
+                                   "compare --by acquisition --metric rmse_m " + sweep.string(), std::string("run x"),
+                                   std::string("pareto --cost taps --error rmse_m --within 3mm")}) {
+    changed = files;
+    changed.at("results/1/command") = words + "\n";
+    EXPECT_EQ(verify_files(changed, true).status, 1) << words;
+    EXPECT_EQ(palpate({"bundle", sweep.string(), "-o", "z.palpate.tar.gz", "--result", words}).status, 2) << words;
+  }
+  EXPECT_FALSE(fs::exists(here() / "PWNED.csv"));
+}
+
+TEST_F(Bundle, OfAnotherInstructionSetVerifiesWithinTheStatedBound) {
+  const fs::path sweep = small_sweep();
+  bundled({sweep.string(), "--result", "compare --by acquisition --metric rmse_m"});
+  environment_ = {"PALPATE_INSTRUCTIONS=baseline"};
+  const Ended ended = verify();
+  EXPECT_EQ(ended.status, 0) << ended.out;
+}
+
 TEST_F(Bundle, IsCheckedBySampleWithTheShareThatThisWouldMiss) {
   bundled({small_sweep().string()});
   const Ended ended = verify({"--sample", "2"});
@@ -238,7 +299,7 @@ TEST_F(Bundle, ReplaysRunsWhoseTapsCannotBeMadeAgainAndFindsAChangedTap) {
   EXPECT_THAT(wrong.out, HasSubstr("recorded "));
   const Ended again = palpate({"rerun", kFile, run.filename().string(), "--runs", "other"});
   EXPECT_EQ(again.status, 0) << again.err;
-  EXPECT_THAT(again.out, HasSubstr("cannot be made again"));
+  EXPECT_THAT(again.out, HasSubstr("so its record was copied"));
 }
 
 TEST_F(Bundle, RerunsARunWithTheSameTaps) {
@@ -256,6 +317,8 @@ TEST_F(Bundle, RerunsARunWithTheSameTaps) {
 
 TEST_F(Bundle, RefusesWhatItCannotPack) {
   const fs::path sweep = small_sweep();
+  write("there.palpate.tar.gz", "precious");
+  EXPECT_THAT(refused({"bundle", sweep.string(), "-o", "there.palpate.tar.gz"}), HasSubstr("exists already"));
   EXPECT_THAT(refused({"bundle", sweep.string(), "-o", "x.tar"}),
               HasSubstr("write a name that ends in .palpate.tar.gz"));
   EXPECT_THAT(refused({"bundle", sweep.string(), "--result", "run x"}), HasSubstr("is not compare, pareto or curves"));

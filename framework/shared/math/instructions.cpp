@@ -7,8 +7,23 @@
 #include <cstdlib>
 #include <string>
 
+#if defined(__x86_64__)
+#include <cpuid.h>
+#endif
+
 namespace palpate {
 namespace {
+
+#if defined(__x86_64__)
+/// Returns whether the processor has F16C, for which clang 14 knows no name.
+bool has_f16c() {
+  unsigned a = 0;
+  unsigned b = 0;
+  unsigned c = 0;
+  unsigned d = 0;
+  return __get_cpuid(1, &a, &b, &c, &d) != 0 && (c & bit_F16C) != 0;
+}
+#endif
 
 /// Returns the widest set of the processor. Highway requires the same processor features for its targets
 /// (math/highway.hpp).
@@ -16,8 +31,7 @@ Instructions widest() {
 #if defined(__x86_64__)
   const bool avx2 = __builtin_cpu_supports("avx2") != 0 && __builtin_cpu_supports("fma") != 0 &&
                     __builtin_cpu_supports("bmi") != 0 && __builtin_cpu_supports("bmi2") != 0 &&
-                    __builtin_cpu_supports("aes") != 0 && __builtin_cpu_supports("pclmul") != 0 &&
-                    __builtin_cpu_supports("f16c") != 0;
+                    __builtin_cpu_supports("aes") != 0 && __builtin_cpu_supports("pclmul") != 0 && has_f16c();
   const bool avx512 = __builtin_cpu_supports("avx512f") != 0 && __builtin_cpu_supports("avx512vl") != 0 &&
                       __builtin_cpu_supports("avx512dq") != 0 && __builtin_cpu_supports("avx512bw") != 0 &&
                       __builtin_cpu_supports("avx512cd") != 0;
