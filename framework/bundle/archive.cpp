@@ -47,7 +47,8 @@ std::string header_of(const std::string& path, std::uintmax_t size, const std::s
   std::string prefix;
   if (path.size() > kShortName) {
     const std::size_t cut = path.find('/', path.size() - kShortName - 1);
-    if (cut == std::string::npos || cut > kLongestPrefix) throw refused(file, "the name '" + path + "' is too long");
+    if (cut > kLongestPrefix)  // also without a '/'
+      throw refused(file, "the name '" + path + "' is too long");
     prefix = path.substr(0, cut);
     name = path.substr(cut + 1);
   }
@@ -195,7 +196,7 @@ void write_archive(const fs::path& file, const std::string& folder, const Archiv
   for (const auto& [name, content] : files) {
     check_archived_name(name, file.string());
     known.add(name, file.string());
-    write(header_of(folder + "/" + name, content.size(), file.string()));
+    write(header_of(fmt::format("{}/{}", folder, name), content.size(), file.string()));
     write(content);
     write(padding_of(content.size()));
   }

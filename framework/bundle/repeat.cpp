@@ -192,8 +192,11 @@ void repeat(const RunEnvironment& environment, const ResolvedConfig& config, con
   const std::optional<Error> trouble = catch_error([&] { start_run(environment, config, directory, {}); });
   if (trouble && !read_record_end(directory).end) throw Error(*trouble);
   const fs::path file = directory / kRecordFile;
-  compare_records(read_file(recorded.file), portable_record(read_file(file), file), recorded.attempts.size(), exact,
-                  differences);
+  // Only the first line has paths.
+  const std::string text = read_file(file);
+  const std::size_t first = text.find('\n') + 1;
+  compare_records(read_file(recorded.file), portable_record(text.substr(0, first), file) + text.substr(first),
+                  recorded.attempts.size(), exact, differences);
   fs::remove_all(directory);
 }
 
