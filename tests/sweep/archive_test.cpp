@@ -111,11 +111,24 @@ TEST_F(Archive, RefusesNamesThatSomeFileSystemsCannotHaveTogether) {
 TEST_F(Archive, RefusesBombsAndSizesThatItsLimitForbids) {
   const fs::path zeros = written({{"zeros", std::string(100'000'000, '\0')}});
   EXPECT_THAT(test::error_of([&] { read(zeros); }), HasSubstr("is compressed by more than 60 : 1"));
-  const fs::path file = written({{"a", std::string(5000, 'x')}, {"b", std::string(6000, 'x')}});
-  EXPECT_THAT(test::error_of([&] { read(file, 10'000); }), HasSubstr("unpacks to more than 10000 bytes"));
-  EXPECT_EQ(read(file, 11'000).size(), 2U);
+  ArchivedFiles ten;
+  for (int i = 0; i < 10; ++i) ten[std::to_string(i)] = std::string(1000, 'x');
+  const fs::path file = written(ten);
+  EXPECT_THAT(test::error_of([&] { read(file, 9000); }), HasSubstr("unpacks to more than 9000 bytes"));
+  EXPECT_THAT(test::error_of([&] { read(file, 7000); }), HasSubstr("'0' has more than 875 bytes"));
+  EXPECT_EQ(read(file, 10'000), ten);
   std::string claims = unzipped(written({{"a", "x"}}));
   EXPECT_THAT(refusal(claims.substr(0, 600)), HasSubstr("ends too early"));
+}
+
+TEST_F(Archive, RefusesMoreFilesAndFoldersThanItsLimitAllows) {
+  ArchivedFiles many;
+  for (int i = 0; i < 100'001; ++i) many.emplace(std::to_string(i), sha256_of(std::to_string(i)));  // hard to compress
+  EXPECT_THAT(test::error_of([&] { read(written(many)); }), HasSubstr("has more than 100000 files"));
+  ArchivedFiles deep;
+  const std::string levels = "/b/c/d/e/f/g/h/i/j/k";
+  for (int i = 0; i < 30'000; ++i) deep.emplace(std::to_string(i) + levels, "");
+  EXPECT_THAT(test::error_of([&] { read(written(deep)); }), HasSubstr("or too many folders"));
 }
 
 TEST_F(Archive, RefusesEveryChangedByteOfItsFrame) {
