@@ -22,6 +22,7 @@ namespace palpate {
 namespace {
 
 using testing::AllOf;
+using testing::EndsWith;
 using testing::HasSubstr;
 using testing::Not;
 
@@ -269,6 +270,14 @@ TEST_F(Bundle, OfAnotherInstructionSetVerifiesWithinTheStatedBound) {
   environment_ = {"PALPATE_INSTRUCTIONS=baseline"};
   const Ended ended = verify();
   EXPECT_EQ(ended.status, 0) << ended.out;
+}
+
+TEST_F(Bundle, WithALongListOfHashesIsRefusedInOneLine) {
+  ArchivedFiles files = bundled({small_sweep().string()});
+  for (int i = 0; i < 100'000; ++i) files.at(kSumsFile) += std::to_string(i) + "\n";
+  const Ended ended = verify_files(files, false);
+  EXPECT_EQ(ended.status, 1);
+  EXPECT_THAT(ended.out, EndsWith("\nSHA256SUMS is too large for its files\n1 difference\n"));
 }
 
 TEST_F(Bundle, IsCheckedBySampleWithTheShareThatThisWouldMiss) {
