@@ -51,6 +51,17 @@ std::string version_of(const std::string& record, const std::string& file) {
                      dirty ? " with changes that are in no commit" : "");
 }
 
+/// Throws Error for a key that occurs twice in a map, because readers differ in the value that they take.
+void check_keys(const Tree& line, const fs::path& file) {
+  for_all(line, [&](const Tree& map) {
+    std::set<std::string_view> keys;
+    for (const Tree::Entry& one : map.entries) {
+      if (!keys.insert(one.key).second)
+        throw Error(file.string(), fmt::format("has the key '{}' twice in a line", one.key));
+    }
+  });
+}
+
 /// Removes the values that change no result of a run.
 void erase_unimportant(Tree& config) {
   config.erase("log");
@@ -157,6 +168,7 @@ std::string portable_record(const std::string& text, const fs::path& file) {
   for (std::string line; std::getline(lines, line) && !lines.eof();) {
     const LineKind kind = kind_of_line(line);
     Tree tree = parse_json(line, file);
+    check_keys(tree, file);
     if (kind == LineKind::manifest || kind == LineKind::attempt) make_portable(tree);
     out += to_json_line(tree) + "\n";
   }

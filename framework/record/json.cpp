@@ -65,10 +65,6 @@ class TreeReader final : public nlohmann::json_sax<Json> {
   bool end_object() override { return close(); }
   bool end_array() override { return close(); }
   bool key(string_t& key) override {
-    if (open_.back()->find(key) != nullptr) {
-      reason = "has a key twice";
-      return false;
-    }
     open_.back()->entries.push_back({std::move(key), {}, {}});
     return true;
   }
