@@ -11,8 +11,9 @@
 // | sources/NAME/ | sources of plugins and programs that palpate does not contain |
 // | results/N/ | `command`: words of a command of palpate, without its records; and its output |
 //
-// Paths and names of the machine stay out. Values that change no result of a run are left out: `log`, `expect` and the
-// number of threads. All tables that follow from the records are left out, too.
+// Host names, command lines, folders of plugins and origins, and the paths of named files stay out. Values that change
+// no result of a run are left out: `log`, `expect`, the pace of the simulator and the number of threads. All tables
+// that follow from the records are left out, too.
 #pragma once
 
 #include "bundle/archive.hpp"

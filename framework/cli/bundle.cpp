@@ -13,8 +13,8 @@
 #include <palpate/error.hpp>
 
 #include <fmt/format.h>
-
 #include <boost/algorithm/string/predicate.hpp>
+
 #include <cstdlib>
 #include <set>
 #include <string>
@@ -72,7 +72,8 @@ int bundle(CommandEnvironment& program, const BundleArguments& arguments) {
   for (const std::string& one : folders) records[one] = scratch.path() / one;
   for (const CommandWords& one : commands) check_result_command(one, records);
   if (commands.empty()) print_message("note: the bundle has no result; --result adds one\n");
-  for (const auto& [file, content] : commands.empty() ? ArchivedFiles() : collector.files()) {
+  for (const auto& [file, content] : collector.files()) {
+    if (commands.empty()) break;
     fs::create_directories((scratch.path() / file).parent_path());
     write_file(scratch.path() / file, content);
   }

@@ -53,13 +53,6 @@ std::string output_of(const CommandEnvironment& program, const CommandWords& wor
   return read_file(file);
 }
 
-std::vector<std::string> cells_of(const std::string& line) {
-  std::vector<std::string> out;
-  std::istringstream in(line);
-  for (std::string cell; std::getline(in, cell, ',');) out.push_back(cell);
-  return out;
-}
-
 /// Returns the words of a command before its first option: names of records.
 CommandWords names_in(const CommandWords& command) {
   const auto option =
@@ -131,10 +124,7 @@ std::vector<std::string> compare_outputs(const std::string& recorded, const std:
     const bool has_b = bool(std::getline(after, b));
     if (!has_a && !has_b) return out;
     if (a == b && has_a == has_b) continue;
-    const std::vector<std::string> first = cells_of(a);
-    const std::vector<std::string> second = cells_of(b);
-    const auto equal = [](const std::string& x, const std::string& y) { return !differ(x, y); };
-    if (exact || has_a != has_b || !std::equal(first.begin(), first.end(), second.begin(), second.end(), equal))
+    if (exact || has_a != has_b || differ(a, b))
       out.push_back(fmt::format("{}:{}: recorded '{}', now '{}'", name, number, a, b));
   }
 }

@@ -15,7 +15,6 @@
 #include <boost/algorithm/string/predicate.hpp>
 
 #include <algorithm>
-
 #include <vector>
 
 namespace palpate::cli {

@@ -70,7 +70,7 @@ RunCheck read_check(const fs::path& file) {
 struct Findings {
   std::vector<std::string> differences;
   std::map<std::string, int> not_repeated;  ///< numbers of runs by reason
-  int unchecked = 0;                        ///< number of runs whose plugins are missing
+  int unchecked = 0;                        ///< number of runs with RunCheck::Kind::unchecked
   bool same_build = true;                   ///< whether this build made all runs that were checked
 
   void add(const std::string& place, const std::vector<std::string>& lines) {

@@ -41,7 +41,7 @@ struct ResolveNotes {
   std::vector<Origin> origins;  ///< origin of each value, in the order of the resolved config
   std::vector<Origin> dropped;  ///< options that were set for a type that was replaced, and that the final type lacks
   std::vector<std::string> files;  ///< dotted paths of the values that name files (Field::names_file())
-  PluginNames plugins;          ///< kind and name of all plugins of the config
+  PluginNames plugins;             ///< kind and name of all plugins of the config
   /// One line `path=value` for each value that affects the results of a run, in the order of the fields: see
   /// identity_text().
   std::vector<std::string> identity;
